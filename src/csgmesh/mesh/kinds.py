@@ -1,0 +1,99 @@
+"""Kinds of cells as data: how many points, which edges, which facets.
+
+Point orders are those of meshio (and VTK). A cell is positively oriented when its Jacobian is
+positive: triangles and quads run counterclockwise. The facets of a plane cell keep the cell on
+their left, those of a solid cell have their normal pointing out of it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
+
+
+@dataclass(frozen=True)
+class Kind:
+    """A kind of cell.
+
+    Attributes
+    ----------
+    name : str
+        As in meshio.
+    dim : int
+        Dimension of the cell itself.
+    n_points : int
+        Points in a row of the connectivity; the corners come first.
+    n_corners : int
+        Points at the corners of the straight cell.
+    edges : tuple of tuple of int
+        Local corner numbers of each edge.
+    facets : tuple of tuple of int
+        Local point numbers of each facet (mid-side points included).
+    facet_kinds : tuple of str
+        The kind of each facet.
+    """
+
+    name: str
+    dim: int
+    n_points: int
+    n_corners: int
+    edges: tuple[tuple[int, ...], ...]
+    facets: tuple[tuple[int, ...], ...]
+    facet_kinds: tuple[str, ...]
+
+    @property
+    def order(self) -> int:
+        """1 for straight cells, 2 for cells with mid-side points."""
+        return 1 if self.n_points == self.n_corners else 2
+
+
+_LINE = ((0, 1),)
+_TRIANGLE = ((0, 1), (1, 2), (2, 0))
+_QUAD = ((0, 1), (1, 2), (2, 3), (3, 0))
+_TETRA = ((0, 1), (1, 2), (2, 0), (0, 3), (1, 3), (2, 3))
+_HEXAHEDRON = (
+    *((0, 1), (1, 2), (2, 3), (3, 0)),
+    *((4, 5), (5, 6), (6, 7), (7, 4)),
+    *((0, 4), (1, 5), (2, 6), (3, 7)),
+)
+_WEDGE = ((0, 1), (1, 2), (2, 0), (3, 4), (4, 5), (5, 3), (0, 3), (1, 4), (2, 5))
+_PYRAMID = ((0, 1), (1, 2), (2, 3), (3, 0), (0, 4), (1, 4), (2, 4), (3, 4))
+
+_TETRA_FACETS = ((0, 2, 1), (0, 1, 3), (1, 2, 3), (0, 3, 2))
+_HEXAHEDRON_FACETS = (
+    *((0, 3, 2, 1), (4, 5, 6, 7)),
+    *((0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7)),
+)
+_WEDGE_FACETS = ((0, 2, 1), (3, 4, 5), (0, 1, 4, 3), (1, 2, 5, 4), (2, 0, 3, 5))
+_PYRAMID_FACETS = ((0, 3, 2, 1), (0, 1, 4), (1, 2, 4), (2, 3, 4), (3, 0, 4))
+
+_TRIANGLE6_FACETS = ((0, 1, 3), (1, 2, 4), (2, 0, 5))
+_QUAD8_FACETS = ((0, 1, 4), (1, 2, 5), (2, 3, 6), (3, 0, 7))
+_TETRA10_FACETS = (
+    *((0, 2, 1, 6, 5, 4), (0, 1, 3, 4, 8, 7)),
+    *((1, 2, 3, 5, 9, 8), (0, 3, 2, 7, 9, 6)),
+)
+
+
+def _table() -> dict[str, Kind]:
+    kinds = (
+        Kind("vertex", 0, 1, 1, (), (), ()),
+        Kind("line", 1, 2, 2, _LINE, ((0,), (1,)), ("vertex",) * 2),
+        Kind("triangle", 2, 3, 3, _TRIANGLE, _TRIANGLE, ("line",) * 3),
+        Kind("quad", 2, 4, 4, _QUAD, _QUAD, ("line",) * 4),
+        Kind("tetra", 3, 4, 4, _TETRA, _TETRA_FACETS, ("triangle",) * 4),
+        Kind("hexahedron", 3, 8, 8, _HEXAHEDRON, _HEXAHEDRON_FACETS, ("quad",) * 6),
+        Kind("wedge", 3, 6, 6, _WEDGE, _WEDGE_FACETS, ("triangle",) * 2 + ("quad",) * 3),
+        Kind("pyramid", 3, 5, 5, _PYRAMID, _PYRAMID_FACETS, ("quad",) + ("triangle",) * 4),
+        Kind("line3", 1, 3, 2, _LINE, ((0,), (1,)), ("vertex",) * 2),
+        Kind("triangle6", 2, 6, 3, _TRIANGLE, _TRIANGLE6_FACETS, ("line3",) * 3),
+        Kind("quad8", 2, 8, 4, _QUAD, _QUAD8_FACETS, ("line3",) * 4),
+        Kind("quad9", 2, 9, 4, _QUAD, _QUAD8_FACETS, ("line3",) * 4),
+        Kind("tetra10", 3, 10, 4, _TETRA, _TETRA10_FACETS, ("triangle6",) * 4),
+    )
+    return {kind.name: kind for kind in kinds}
+
+
+#: Every kind of cell, by name.
+KINDS: Mapping[str, Kind] = MappingProxyType(_table())
