@@ -1,0 +1,56 @@
+"""Which boxes overlap, which points are near: the only door to shapely's and scipy's search trees."""
+
+from __future__ import annotations
+
+import numpy as np
+
+
+class Boxes:
+    """Axis-parallel boxes, searchable; closed, so boxes that only touch overlap.
+
+    Parameters
+    ----------
+    lo, hi : (n, 2) float64
+        Lower and upper corners.
+
+    Examples
+    --------
+    >>> Boxes(np.array([[0.0, 0.0], [2.0, 2.0]]), np.array([[1.0, 1.0], [3.0, 3.0]])).pairs()
+    array([], shape=(0, 2), dtype=int64)
+    """
+
+    def __init__(self, lo: np.ndarray, hi: np.ndarray) -> None:
+        from shapely import STRtree
+
+        self._diagonals = _diagonals(lo, hi)
+        self._tree = STRtree(self._diagonals)
+
+    def pairs(self) -> np.ndarray:
+        """All pairs i < j of overlapping boxes, (k, 2), sorted."""
+        found = self._tree.query(self._diagonals)
+        found = found[:, found[0] < found[1]]
+        return _sorted_rows(found)
+
+    def overlapping(self, lo: np.ndarray, hi: np.ndarray) -> np.ndarray:
+        """All pairs (query, box) of the given boxes with these, (k, 2), sorted."""
+        return _sorted_rows(self._tree.query(_diagonals(lo, hi)))
+
+
+def near_pairs(points: np.ndarray, distance: float) -> np.ndarray:
+    """All pairs i < j of points no further apart than `distance`, (k, 2), sorted."""
+    from scipy.spatial import cKDTree
+
+    found = cKDTree(points).query_pairs(distance, output_type="ndarray").astype(np.int64)
+    return _sorted_rows(found.reshape(-1, 2).T)
+
+
+def _diagonals(lo: np.ndarray, hi: np.ndarray) -> np.ndarray:
+    # A search tree looks at envelopes only, and a diagonal has its box's envelope.
+    from shapely import linestrings
+
+    return linestrings(np.stack([lo, hi], axis=1))
+
+
+def _sorted_rows(columns: np.ndarray) -> np.ndarray:
+    order = np.lexsort((columns[1], columns[0]))
+    return np.ascontiguousarray(columns[:, order].T.astype(np.int64))
