@@ -1,0 +1,241 @@
+"""Finding the cell at a point, exactly.
+
+Triangles are sorted into grids of squares, a grid for each power of two of their extent, so that
+each lies in four squares at most however strongly the mesh is graded. A point looks into one
+square of each grid, and an exact predicate decides.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from csgmesh.errors import InputError
+from csgmesh.mesh.kinds import KINDS
+from csgmesh.mesh.orientation import orientations
+
+#: Points are looked up in batches of this many, which bounds the memory.
+_BATCH = 200_000
+
+#: No grid has more squares along a side: keys must fit into 64 bits.
+_FINEST = 30
+
+_NEWTON_STEPS = 20
+
+
+@dataclass(frozen=True, eq=False)
+class _Grid:
+    """Triangles of one size class, sorted by the square they overlap."""
+
+    square: float
+    n_rows: int
+    keys: np.ndarray
+    triangle: np.ndarray
+
+
+@dataclass(frozen=True, eq=False)
+class Locator:
+    """Search structure over plane cells.
+
+    Attributes
+    ----------
+    points : (n, 2) float64
+    cells : mapping of str to (m, k) int64
+    triangles : (t, 3) int64
+        All cells cut into counterclockwise triangles.
+    triangle_cell : (t,) int64
+        The cell of each, counted through all kinds.
+    lo : (2,) float64
+        Origin of the grids.
+    grids : tuple
+    """
+
+    points: np.ndarray
+    cells: Mapping[str, np.ndarray]
+    triangles: np.ndarray
+    triangle_cell: np.ndarray
+    lo: np.ndarray
+    grids: tuple[_Grid, ...]
+
+    @staticmethod
+    def of(points: np.ndarray, cells: Mapping[str, np.ndarray]) -> Locator:
+        """Build the structure."""
+        triangles, owner = _triangulated(points, cells)
+        x, y = (_range(points[:, axis], triangles) for axis in (0, 1))
+        lo, hi = np.stack([x[0], y[0]], axis=1), np.stack([x[1], y[1]], axis=1)
+        finite = np.isfinite(lo).all(axis=1) & np.isfinite(hi).all(axis=1)
+        triangles, owner, lo, hi = triangles[finite], owner[finite], lo[finite], hi[finite]
+        if not len(triangles):
+            return Locator(points, cells, triangles, owner, np.zeros(2), ())
+        origin = lo.min(axis=0)
+        extent = float((hi.max(axis=0) - origin).max())
+        # frexp gives the power of two just above the triangle's extent.
+        level = np.frexp((hi - lo).max(axis=1))[1]
+        level = np.maximum(level, np.frexp(extent)[1] - _FINEST)
+        grids = tuple(
+            _grid(np.flatnonzero(level == one), lo, hi, origin, extent, float(2.0**one))
+            for one in np.unique(level)[::-1].tolist()
+        )
+        return Locator(points, cells, triangles, owner, origin, grids)
+
+    def cells_of(self, points: ArrayLike) -> np.ndarray:
+        """Lowest number of a cell that contains each point, -1 for none."""
+        queries = _queries(points)
+        out = np.full(len(queries), -1)
+        for start in range(0, len(queries), _BATCH):
+            query, triangle = self._hits(queries[start : start + _BATCH])
+            cell = np.full(min(_BATCH, len(queries) - start), np.iinfo(np.int64).max)
+            np.minimum.at(cell, query, self.triangle_cell[triangle])
+            found = cell < np.iinfo(np.int64).max
+            out[start : start + _BATCH][found] = cell[found]
+        return out
+
+    def all_cells_of(self, points: ArrayLike) -> np.ndarray:
+        """All pairs (point, cell) where the closed cell contains the point, (k, 2), sorted."""
+        query, triangle = self._hits(_queries(points))
+        pairs = np.stack([query, self.triangle_cell[triangle]], axis=1)
+        return np.unique(pairs, axis=0) if len(pairs) else pairs
+
+    def interpolate(self, values: ArrayLike, points: ArrayLike) -> np.ndarray:
+        """Values at points from values at the corners; NaN outside."""
+        given = np.asarray(values, float)
+        if given.ndim not in (1, 2) or len(given) != len(self.points):
+            raise InputError(
+                f"values must have shape ({len(self.points)},) or ({len(self.points)}, k), "
+                f"one row a point of the mesh; got {given.shape}"
+            )
+        queries = _queries(points)
+        cell = self.cells_of(queries)
+        columns = given.reshape(len(given), -1)
+        out = np.full((len(queries), columns.shape[1]), np.nan)
+        before = 0
+        for kind, rows in self.cells.items():
+            at = np.flatnonzero((cell >= before) & (cell < before + len(rows)))
+            corners = rows[cell[at] - before, : KINDS[kind].n_corners]
+            weight = _weights(self.points[corners], queries[at])
+            out[at] = np.einsum("ij,ijk->ik", weight, columns[corners])
+            before += len(rows)
+        return out.reshape(len(queries), *given.shape[1:])
+
+    def _hits(self, queries: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Pairs of a point and a triangle that contains it."""
+        found = [self._candidates(grid, queries) for grid in self.grids]
+        query = np.concatenate([np.zeros(0, np.int64), *(q for q, _ in found)])
+        triangle = np.concatenate([np.zeros(0, np.int64), *(t for _, t in found)])
+        for axis in (0, 1):
+            # Half of the candidates fall to their boxes, which are cheaper than the predicate.
+            low, high = _range(self.points[:, axis], self.triangles[triangle])
+            at = queries[query, axis]
+            keep = (at >= low) & (at <= high)
+            query, triangle = query[keep], triangle[keep]
+        stacked = np.concatenate([self.points, queries])
+        for a, b in ((0, 1), (1, 2), (2, 0)):
+            rows = self.triangles[triangle]
+            triples = np.stack([rows[:, a], rows[:, b], query + len(self.points)], axis=1)
+            keep = orientations(stacked, triples) >= 0
+            query, triangle = query[keep], triangle[keep]
+        return query, triangle
+
+    def _candidates(self, grid: _Grid, queries: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        with np.errstate(invalid="ignore"):
+            square = np.floor((queries - self.lo) / grid.square)
+            near = ((square >= 0) & (square < grid.n_rows)).all(axis=1)
+        at = np.flatnonzero(near)
+        square = square[at].astype(np.int64)
+        key = square[:, 0] * grid.n_rows + square[:, 1]
+        first = np.searchsorted(grid.keys, key, side="left")
+        count = np.searchsorted(grid.keys, key, side="right") - first
+        query = np.repeat(at, count)
+        within = np.arange(len(query)) - np.repeat(np.cumsum(count) - count, count)
+        return query, grid.triangle[np.repeat(first, count) + within]
+
+
+def _range(x: np.ndarray, triangles: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    a, b, c = (x[triangles[:, k]] for k in range(3))
+    return np.minimum(np.minimum(a, b), c), np.maximum(np.maximum(a, b), c)
+
+
+def _queries(points: ArrayLike) -> np.ndarray:
+    queries = np.asarray(points, float)
+    if queries.ndim != 2 or queries.shape[1] != 2:
+        raise InputError(f"points must have shape (n, 2); got {queries.shape}")
+    return queries
+
+
+def _triangulated(
+    points: np.ndarray, cells: Mapping[str, np.ndarray]
+) -> tuple[np.ndarray, np.ndarray]:
+    parts, owners, before = [np.zeros((0, 3), np.int64)], [np.zeros(0, np.int64)], 0
+    for kind, rows in cells.items():
+        number = np.arange(before, before + len(rows))
+        if KINDS[kind].n_corners == 3:
+            parts.append(rows[:, :3])
+            owners.append(number)
+        else:
+            cut = _cut_quads(points, rows[:, :4])
+            parts.append(cut.reshape(-1, 3))
+            owners.append(np.repeat(number, 2))
+        before += len(rows)
+    return np.concatenate(parts), np.concatenate(owners)
+
+
+def _cut_quads(points: np.ndarray, quads: np.ndarray) -> np.ndarray:
+    """Two triangles a quad, (m, 2, 3), by the diagonal that keeps them counterclockwise."""
+    first = np.stack([quads[:, [0, 1, 2]], quads[:, [0, 2, 3]]], axis=1)
+    second = np.stack([quads[:, [1, 2, 3]], quads[:, [1, 3, 0]]], axis=1)
+    signs = orientations(points, first.reshape(-1, 3)).reshape(-1, 2)
+    return np.where((signs > 0).all(axis=1)[:, None, None], first, second)
+
+
+def _grid(
+    chosen: np.ndarray,
+    lo: np.ndarray,
+    hi: np.ndarray,
+    origin: np.ndarray,
+    extent: float,
+    square: float,
+) -> _Grid:
+    n_rows = int(extent / square) + 1
+    low = np.floor((lo[chosen] - origin) / square).astype(np.int64)
+    high = np.floor((hi[chosen] - origin) / square).astype(np.int64)
+    keys, triangles = [], []
+    for dx in (0, 1):
+        for dy in (0, 1):
+            fits = (low[:, 0] + dx <= high[:, 0]) & (low[:, 1] + dy <= high[:, 1])
+            keys.append((low[fits, 0] + dx) * n_rows + low[fits, 1] + dy)
+            triangles.append(chosen[fits])
+    key, triangle = np.concatenate(keys), np.concatenate(triangles)
+    order = np.argsort(key, kind="stable")
+    return _Grid(square, n_rows, key[order], triangle[order])
+
+
+def _weights(corners: np.ndarray, points: np.ndarray) -> np.ndarray:
+    """Shape functions of the corners at points inside, (m, 3 or 4)."""
+    if corners.shape[1] == 4:
+        u, v = _bilinear_parameters(corners, points)
+        return np.stack([(1 - u) * (1 - v), u * (1 - v), u * v, (1 - u) * v], axis=1)
+    a, b, c = (corners[:, k] - points for k in range(3))
+    parts = np.stack([_cross(b, c), _cross(c, a), _cross(a, b)], axis=1)
+    return parts / parts.sum(axis=1, keepdims=True)
+
+
+def _bilinear_parameters(corners: np.ndarray, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Inverse of the bilinear map by Newton's method from the middle of the quad."""
+    a, b, c, d = (corners[:, k] for k in range(4))
+    u, v = np.full(len(points), 0.5), np.full(len(points), 0.5)
+    twist = a - b + c - d
+    for _ in range(_NEWTON_STEPS):
+        rest = a + u[:, None] * (b - a) + v[:, None] * (d - a) + (u * v)[:, None] * twist - points
+        along_u = b - a + v[:, None] * twist
+        along_v = d - a + u[:, None] * twist
+        det = _cross(along_u, along_v)
+        u = np.clip(u - _cross(rest, along_v) / det, 0.0, 1.0)
+        v = np.clip(v - _cross(along_u, rest) / det, 0.0, 1.0)
+    return u, v
+
+
+def _cross(a: np.ndarray, b: np.ndarray) -> np.ndarray:
+    return a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]

@@ -1,0 +1,217 @@
+"""Edges, incidences and numbers of a plane complex. Coordinates are never looked at.
+
+Cells are counted through all kinds in the order of the mapping; only their corners count. The
+half-edges of a cell run counterclockwise around it, and stand cell by cell, kind by kind.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from csgmesh.mesh.kinds import KINDS
+
+
+@dataclass(frozen=True, eq=False)
+class Edges:
+    """The edges of a plane complex.
+
+    Attributes
+    ----------
+    points : (e, 2) int64
+        End points, the lower number first; rows sorted.
+    left, right : (e,) int64
+        A cell that runs along the edge forwards, and one that runs backwards; -1 for none.
+    n_left, n_right : (e,) int64
+        How many such cells there are; at most one in a conforming mesh.
+    half_edges : (h, 2) int64
+        Start and end of each half-edge.
+    half_edge_cell : (h,) int64
+    half_edge_edge : (h,) int64
+    n_points, n_cells : int
+    """
+
+    points: np.ndarray
+    left: np.ndarray
+    right: np.ndarray
+    n_left: np.ndarray
+    n_right: np.ndarray
+    half_edges: np.ndarray
+    half_edge_cell: np.ndarray
+    half_edge_edge: np.ndarray
+    n_points: int
+    n_cells: int
+
+    @property
+    def count(self) -> np.ndarray:
+        """Number of cells at each edge, (e,)."""
+        return self.n_left + self.n_right
+
+    @property
+    def is_boundary(self) -> np.ndarray:
+        """Which edges have one cell, (e,) bool."""
+        return self.count == 1
+
+    def find(self, rows: np.ndarray) -> np.ndarray:
+        """Edge numbers of pairs of points in either order, (k,); -1 for pairs that are no edge."""
+        if not len(self.points):
+            return np.full(len(rows), -1)
+        n = self.n_points
+        keys = self.points[:, 0] * n + self.points[:, 1]
+        wanted = np.minimum(rows[:, 0], rows[:, 1]) * n + np.maximum(rows[:, 0], rows[:, 1])
+        at = np.minimum(np.searchsorted(keys, wanted), len(keys) - 1)
+        return np.where(keys[at] == wanted, at, -1)
+
+    def boundary(self) -> np.ndarray:
+        """Edges with one cell, directed with the cell on their left, (b, 2), sorted."""
+        at = np.flatnonzero(self.is_boundary)
+        rows = self.points[at]
+        return np.where((self.n_left[at] == 1)[:, None], rows, rows[:, ::-1])
+
+
+def edges_of(cells: Mapping[str, np.ndarray], n_points: int) -> Edges:
+    """The edges of plane cells.
+
+    Parameters
+    ----------
+    cells : mapping of str to (m, k) int64
+        Point numbers within ``0 .. n_points - 1``.
+    n_points : int
+
+    Examples
+    --------
+    >>> edges = edges_of({"triangle": np.array([[0, 1, 2], [1, 3, 2]])}, 4)
+    >>> edges.points[~edges.is_boundary]
+    array([[1, 2]])
+    >>> edges.left[~edges.is_boundary], edges.right[~edges.is_boundary]
+    (array([0]), array([1]))
+    """
+    half_edges, owner, n_cells = _half_edges(cells)
+    lo, hi = np.minimum(*half_edges.T), np.maximum(*half_edges.T)
+    order = np.argsort(lo * n_points + hi)
+    lo, hi = lo[order], hi[order]
+    is_first = np.ones(len(order), bool)
+    is_first[1:] = (lo[1:] != lo[:-1]) | (hi[1:] != hi[:-1])
+    edge = np.cumsum(is_first) - 1
+    of = np.empty(len(order), np.int64)
+    of[order] = edge
+    n_edges = int(edge[-1]) + 1 if len(edge) else 0
+    forwards = half_edges[:, 0] < half_edges[:, 1]
+    left, right = np.full(n_edges, -1), np.full(n_edges, -1)
+    left[of[forwards]] = owner[forwards]
+    right[of[~forwards]] = owner[~forwards]
+    return Edges(
+        np.stack([lo[is_first], hi[is_first]], axis=1),
+        left,
+        right,
+        np.bincount(of[forwards], minlength=n_edges),
+        np.bincount(of[~forwards], minlength=n_edges),
+        half_edges,
+        owner,
+        of,
+        n_points,
+        n_cells,
+    )
+
+
+def components(edges: Edges, is_open: np.ndarray | None = None) -> tuple[int, np.ndarray]:
+    """Components of the interior: cells are neighbours across edges, not at vertices.
+
+    Parameters
+    ----------
+    edges : Edges
+    is_open : (e,) bool, optional
+        Edges to pass through. Default: all.
+
+    Returns
+    -------
+    count : int
+    component : (n_cells,) int64
+    """
+    passes = (edges.left >= 0) & (edges.right >= 0)
+    if is_open is not None:
+        passes &= is_open
+    return _connected(edges.n_cells, edges.left[passes], edges.right[passes])
+
+
+def interior_euler(edges: Edges, component: np.ndarray, is_open: np.ndarray) -> np.ndarray:
+    """Euler characteristic of each component of the interior, (n_components,).
+
+    A vertex at which the boundary touches itself counts once for each fan of cells around it, so
+    that holes that touch each other stay two holes. Its edges count likewise. For a plane domain
+    this is one less the number of holes.
+
+    Parameters
+    ----------
+    edges : Edges
+    component : (n_cells,) int64
+    is_open : (e,) bool
+        Edges that components were formed through.
+    """
+    n = int(component.max()) + 1 if len(component) else 0
+    cells = np.bincount(component, minlength=n)
+    half = component[edges.half_edge_cell]
+    through = is_open & (edges.left >= 0) & (edges.right >= 0)
+    # A closed edge belongs to both cells beside it, an open one to the two of them together.
+    shared = np.bincount(component[edges.left[through]], minlength=n)
+    n_edges = np.bincount(half, minlength=n) - shared
+    fan, n_fans = _fans(edges, through)
+    one = np.zeros(n_fans, np.int64)
+    one[fan] = half
+    return np.bincount(one, minlength=n) - n_edges + cells
+
+
+def euler_characteristic(edges: Edges) -> int:
+    """Vertices less edges plus cells of the closed complex; unused points do not count."""
+    return len(np.unique(edges.points)) - len(edges.points) + edges.n_cells
+
+
+def _half_edges(cells: Mapping[str, np.ndarray]) -> tuple[np.ndarray, np.ndarray, int]:
+    rows, owners, before = [np.zeros((0, 2), np.int64)], [np.zeros(0, np.int64)], 0
+    for kind, connectivity in cells.items():
+        local = np.array(KINDS[kind].edges)
+        rows.append(connectivity[:, local].reshape(-1, 2))
+        owners.append(np.repeat(np.arange(before, before + len(connectivity)), len(local)))
+        before += len(connectivity)
+    return np.concatenate(rows), np.concatenate(owners), before
+
+
+def _fans(edges: Edges, through: np.ndarray) -> tuple[np.ndarray, int]:
+    """Fan around a vertex to which the start of each half-edge belongs, and their number."""
+    n = len(edges.half_edges)
+    # The corner at a half-edge's start meets, across its edge, the corner of the other cell there:
+    # the half-edge after the twin.
+    after = _next_half_edge(edges)
+    twin = np.full(n, -1)
+    forwards = edges.half_edges[:, 0] < edges.half_edges[:, 1]
+    ahead, back = np.full(len(edges.points), -1), np.full(len(edges.points), -1)
+    ahead[edges.half_edge_edge[forwards]] = np.flatnonzero(forwards)
+    back[edges.half_edge_edge[~forwards]] = np.flatnonzero(~forwards)
+    twin[forwards] = back[edges.half_edge_edge[forwards]]
+    twin[~forwards] = ahead[edges.half_edge_edge[~forwards]]
+    at = np.flatnonzero(through[edges.half_edge_edge])
+    count, fan = _connected(n, at, after[twin[at]])
+    return fan, count
+
+
+def _next_half_edge(edges: Edges) -> np.ndarray:
+    owner = edges.half_edge_cell
+    n = len(owner)
+    follow = np.arange(1, n + 1)
+    is_last = np.ones(n, bool)
+    is_last[:-1] = owner[1:] != owner[:-1]
+    is_first = np.ones(n, bool)
+    is_first[1:] = is_last[:-1]
+    follow[is_last] = np.flatnonzero(is_first)
+    return follow
+
+
+def _connected(n: int, a: np.ndarray, b: np.ndarray) -> tuple[int, np.ndarray]:
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import connected_components
+
+    graph = coo_array((np.ones(len(a), np.int8), (a, b)), shape=(n, n))
+    count, label = connected_components(graph, directed=False)
+    return int(count), label.astype(np.int64)
