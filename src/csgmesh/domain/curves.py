@@ -302,9 +302,11 @@ def _table(
 
 
 def _line(d: np.ndarray, t: np.ndarray, order: int) -> np.ndarray:
+    along = d[:, 2:4] - d[:, 0:2]
     if order == 0:
-        return (1 - t) * d[:, 0:2] + t * d[:, 2:4]
-    return d[:, 2:4] - d[:, 0:2] if order == 1 else np.zeros((len(d), 2))
+        # Measured from the nearer end: exact at both, and axis-parallel lines keep their coordinate.
+        return np.where(t < 0.5, d[:, 0:2] + t * along, d[:, 2:4] - (1 - t) * along)
+    return along if order == 1 else np.zeros((len(d), 2))
 
 
 def _arc(d: np.ndarray, t: np.ndarray, order: int) -> np.ndarray:

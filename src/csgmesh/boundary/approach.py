@@ -1,0 +1,168 @@
+"""Where two curves of any kind come within the snap distance: subdivision, then Newton's method.
+
+Parameter boxes are halved while the boxes of their curve pieces overlap; along the chord of one
+piece the other must overlap as well, which separates nearly parallel curves. What survives until
+the pieces are straight to within the snap distance is a crossing, a touching or a near miss.
+(Sederberg and Nishita 1990 call the idea of a box along the chord a fat line.)
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from csgmesh.boundary.pieces import Pieces
+from csgmesh.domain.curves import Curves, cross
+
+_DEPTH = 60
+_SAMPLES = np.linspace(0.0, 1.0, 9)
+
+
+def approaches(
+    pieces: Pieces, pairs: np.ndarray, snap: float
+) -> tuple[np.ndarray, np.ndarray]:
+    """Pairs and parameters at which the pieces cross, touch or nearly touch.
+
+    Returns
+    -------
+    rows : (k, 2) int64
+        Pairs of pieces, repeated as often as they meet.
+    t : (k, 2) float64
+        Parameters on both.
+    """
+    if len(pairs):
+        pairs = pairs[~_coincide(pieces, pairs, snap)]
+    if len(pairs) == 0:
+        return pairs.reshape(-1, 2), np.zeros((0, 2))
+    row, interval = _subdivide(pieces, pairs, snap)
+    return _polish(pieces, pairs[row], interval.mean(axis=2), snap)
+
+
+def _coincide(pieces: Pieces, pairs: np.ndarray, snap: float) -> np.ndarray:
+    """Pairs that run along one another wherever they overlap: their ends say all there is."""
+    i, j = pairs.T
+    local = pieces.local
+    a, b = pieces.source[i], pieces.source[j]
+    same = (local.kind[a] == local.kind[b]) & (local.data[a] == local.data[b]).all(1)
+    # Reversed copies and curves equal up to rounding: compare samples over the overlap.
+    at = np.flatnonzero(~same)
+    ia, jb = i[at], j[at]
+    ends = []
+    for t in (pieces.lo[ia], pieces.hi[ia]):
+        p = local.points(a[at], t)
+        s = local.project(b[at], p, pieces.lo[jb], pieces.hi[jb])
+        ends.append((t, np.hypot(*(local.points(b[at], s) - p).T) <= snap))
+    for s in (pieces.lo[jb], pieces.hi[jb]):
+        p = local.points(b[at], s)
+        t = local.project(a[at], p, pieces.lo[ia], pieces.hi[ia])
+        ends.append((t, np.hypot(*(local.points(a[at], t) - p).T) <= snap))
+    t = np.array([e[0] for e in ends])
+    on = np.array([e[1] for e in ends])
+    first = np.where(on, t, np.inf).min(0)
+    last = np.where(on, t, -np.inf).max(0)
+    overlap = np.flatnonzero((on.sum(0) >= 2) & (last - first > 1e-9 * np.abs(t).max(0)))
+    if len(overlap):
+        k = at[overlap]
+        f, g = first[overlap, None], last[overlap, None]
+        tt = (f + (g - f) * _SAMPLES).ravel()
+        p = local.points(np.repeat(a[k], len(_SAMPLES)), tt)
+        bb, jj = np.repeat(b[k], len(_SAMPLES)), np.repeat(j[k], len(_SAMPLES))
+        s = local.project(bb, p, pieces.lo[jj], pieces.hi[jj])
+        off = np.hypot(*(local.points(bb, s) - p).T).reshape(-1, len(_SAMPLES)).max(1)
+        same[k] = off <= snap
+    return same
+
+
+def _subdivide(pieces: Pieces, pairs: np.ndarray, snap: float) -> tuple[np.ndarray, np.ndarray]:
+    local = pieces.local
+    bend = local.second_derivative_bounds()
+    row = np.arange(len(pairs))
+    interval = np.stack([pieces.lo[pairs], pieces.hi[pairs]], axis=2)
+    done_row, done_interval = [], []
+    for _ in range(_DEPTH):
+        source = pieces.source[pairs[row]]
+        ends = [
+            [local.points(source[:, side], interval[:, side, e]) for e in (0, 1)] for side in (0, 1)
+        ]
+        width = interval[:, :, 1] - interval[:, :, 0]
+        sag = width**2 * bend[source] / 8
+        alive = _may_meet(ends, sag, snap)
+        row, interval, sag, width = row[alive], interval[alive], sag[alive], width[alive]
+        straight = (sag <= snap / 4).all(1)
+        done_row.append(row[straight])
+        done_interval.append(interval[straight])
+        row, interval, sag = row[~straight], interval[~straight], sag[~straight]
+        if len(row) == 0:
+            break
+        side = sag.argmax(1)
+        k = np.arange(len(row))
+        middle = interval[k, side].mean(axis=1)
+        lower, upper = interval.copy(), interval
+        lower[k, side, 1] = middle
+        upper[k, side, 0] = middle
+        row, interval = np.concatenate([row, row]), np.concatenate([lower, upper])
+    return np.concatenate(done_row), np.concatenate(done_interval)
+
+
+def _may_meet(
+    ends: list[list[np.ndarray]], sag: np.ndarray, snap: float
+) -> np.ndarray:
+    (a0, a1), (b0, b1) = ends
+    alive = np.ones(len(a0), bool)
+    reach = (sag.sum(1) + snap)[:, None]
+    alive &= (np.minimum(a0, a1) - reach <= np.maximum(b0, b1)).all(1)
+    alive &= (np.minimum(b0, b1) - reach <= np.maximum(a0, a1)).all(1)
+    for p, q, x, y in ((a0, a1, b0, b1), (b0, b1, a0, a1)):
+        along = q - p
+        length = np.hypot(*along.T)
+        off_x, off_y = cross(along, x - p), cross(along, y - p)
+        far = reach[:, 0] * length
+        alive &= ~((np.minimum(off_x, off_y) > far) | (np.maximum(off_x, off_y) < -far))
+    return alive
+
+
+def _polish(
+    pieces: Pieces, rows: np.ndarray, t: np.ndarray, snap: float
+) -> tuple[np.ndarray, np.ndarray]:
+    local = pieces.local
+    i, j = pieces.source[rows].T
+    lo, hi = pieces.lo[rows], pieces.hi[rows]
+    crossing = _newton_crossing(local, i, j, t.copy(), lo, hi)
+    gap = np.hypot(*(local.points(i, crossing[:, 0]) - local.points(j, crossing[:, 1])).T)
+    moved = np.hypot(*(local.points(i, crossing[:, 0]) - local.points(i, t[:, 0])).T)
+    crossed = (gap <= 1e-14) & (moved <= 1e4 * snap)
+    nearest = _nearest(local, i, j, t.copy(), lo, hi)
+    best = np.where(crossed[:, None], crossing, nearest)
+    # Neighbouring leaves of the subdivision find the same point: keep one of each.
+    point = local.points(i, best[:, 0])
+    cell = np.floor(point / (snap / 2)).astype(np.int64)
+    order = np.lexsort((~crossed, cell[:, 1], cell[:, 0], rows[:, 1], rows[:, 0]))
+    key = np.column_stack([rows, cell])[order]
+    first = order[np.r_[True, (key[1:] != key[:-1]).any(1)]]
+    return rows[first], best[first]
+
+
+def _newton_crossing(
+    local: Curves, i: np.ndarray, j: np.ndarray, t: np.ndarray, lo: np.ndarray, hi: np.ndarray
+) -> np.ndarray:
+    for _ in range(20):
+        r = local.points(i, t[:, 0]) - local.points(j, t[:, 1])
+        di, dj = local.derivatives(i, t[:, 0]), local.derivatives(j, t[:, 1])
+        turn = cross(di, dj)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            step = np.column_stack([cross(r, dj), cross(r, di)]) / turn[:, None]
+        t = np.clip(t - np.where(np.isfinite(step), step, 0.0), lo, hi)
+    return t
+
+
+def _nearest(
+    local: Curves, i: np.ndarray, j: np.ndarray, t: np.ndarray, lo: np.ndarray, hi: np.ndarray
+) -> np.ndarray:
+    """Closest approach near `t`: alternating projections converge at every kind of contact."""
+    reach = 2.0**-4 * (hi - lo)
+    low, high = np.maximum(t - reach, lo), np.minimum(t + reach, hi)
+    for _ in range(8):
+        t[:, 1] = local.project(j, local.points(i, t[:, 0]), low[:, 1], high[:, 1])
+        t[:, 0] = local.project(i, local.points(j, t[:, 1]), low[:, 0], high[:, 0])
+    return t
+
+

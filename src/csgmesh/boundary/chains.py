@@ -1,0 +1,223 @@
+"""Edges between different regions, joined into chains: maximal stretches of one curve.
+
+A vertex that only hidden leaves left behind, or where a curve was cut to be monotone, is no
+corner of the domain and disappears.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from csgmesh.boundary.arrangement import Arrangement
+from csgmesh.boundary.pieces import FRAME
+from csgmesh.csg.program import Program
+from csgmesh.domain.curves import ARC
+from csgmesh.errors import EmptyDomainError, UnboundedDomainError
+
+
+@dataclass(frozen=True, eq=False)
+class Chains:
+    """Stretches of the domain's boundary between its corners.
+
+    Attributes
+    ----------
+    source : (k,) int64
+        Exact curve of each.
+    t0, t1 : (k,) float64
+        Parameters at start and end, increasing; an arc's may pass 2π.
+    tail, head : (k,) int64
+        Vertices of the arrangement; the same one for a closed curve without a corner.
+    left, right : (k,) int64
+        Regions on both sides, -1 outside.
+    marker : (k,) int64
+        Into `names`.
+    names : tuple of tuple of str
+    """
+
+    source: np.ndarray
+    t0: np.ndarray
+    t1: np.ndarray
+    tail: np.ndarray
+    head: np.ndarray
+    left: np.ndarray
+    right: np.ndarray
+    marker: np.ndarray
+    names: tuple[tuple[str, ...], ...]
+
+
+def chains(
+    program: Program, arrangement: Arrangement, face: np.ndarray, region: np.ndarray
+) -> Chains:
+    """The domain's boundary, its interfaces and its embedded paths.
+
+    Parameters
+    ----------
+    program : Program
+    arrangement : Arrangement
+    face : (2m,) int64
+        Face on the left of each half-edge.
+    region : (n_faces,) int64
+        Region of each face, -1 outside.
+    """
+    left, right = region[face[0::2]], region[face[1::2]]
+    parent_leaf = arrangement.pieces.leaf[arrangement.parent_piece]
+    embedded = np.zeros(len(left), bool)
+    embedded[arrangement.parent_edge[parent_leaf >= len(program.leaves)]] = True
+    kept = np.flatnonzero((left != right) | (embedded & (left >= 0)))
+    if not (region >= 0).any():
+        raise EmptyDomainError(_nothing_left(program))
+    marker, names = _markers(program, arrangement, kept)
+    free = np.flatnonzero(marker < 0)
+    if region[0] >= 0 or len(free):
+        raise UnboundedDomainError(_reaches_out(program, arrangement, kept[free]))
+    return _joined(arrangement, kept, left[kept], right[kept], marker, names)
+
+
+def part_names(program: Program) -> tuple[np.ndarray, list[str]]:
+    """Where each leaf's part names start, (n_leaves + n_paths + 1,), and all of them."""
+    names: list[str] = []
+    start = [0]
+    for leaf in program.leaves:
+        names.extend(leaf.names)
+        start.append(len(names))
+    for name, _ in program.paths:
+        names.append(name)
+        start.append(len(names))
+    return np.array(start), names
+
+
+def _markers(
+    program: Program, arrangement: Arrangement, kept: np.ndarray
+) -> tuple[np.ndarray, tuple[tuple[str, ...], ...]]:
+    """Marker of each kept edge, -1 where nothing but the working frame lies on it."""
+    start, names = part_names(program)
+    position = np.full(len(arrangement.tail), -1)
+    position[kept] = np.arange(len(kept))
+    row = position[arrangement.parent_edge]
+    part = arrangement.pieces.part[arrangement.parent_piece]
+    use = (row >= 0) & (part != FRAME)
+    row, piece = row[use], arrangement.parent_piece[use]
+    name = start[arrangement.pieces.leaf[piece]] + arrangement.pieces.part[piece]
+    order = np.lexsort((name, row))
+    row, name = row[order], name[order]
+    first = np.searchsorted(row, np.arange(len(kept) + 1))
+    count = first[1:] - first[:-1]
+    # Nearly all edges have one name; only the others need a tuple of their own.
+    single = name[np.minimum(first[:-1], max(len(name) - 1, 0))] if len(name) else count
+    table: dict[tuple[str, ...], int] = {}
+    of_name: dict[int, int] = {}
+    marker = np.full(len(kept), -1)
+    for k in np.flatnonzero(count > 0).tolist():
+        if count[k] == 1:
+            number = int(single[k])
+            if number not in of_name:
+                of_name[number] = table.setdefault((names[number],), len(table))
+            marker[k] = of_name[number]
+        else:
+            several = dict.fromkeys(names[n] for n in name[first[k] : first[k + 1]].tolist())
+            marker[k] = table.setdefault(tuple(several), len(table))
+    return marker, tuple(table)
+
+
+def _joined(
+    arrangement: Arrangement,
+    kept: np.ndarray,
+    left: np.ndarray,
+    right: np.ndarray,
+    marker: np.ndarray,
+    names: tuple[tuple[str, ...], ...],
+) -> Chains:
+    tail, head = arrangement.tail[kept], arrangement.head[kept]
+    source = arrangement.source[kept]
+    t0, t1 = arrangement.t_tail[kept], arrangement.t_head[kept]
+    follower = _followers(arrangement, tail, head, source, t0, t1, left, right, marker)
+    label = _runs(len(kept), follower)
+    n = int(label.max(initial=-1)) + 1
+    has_predecessor = np.zeros(len(kept), bool)
+    has_predecessor[follower[follower >= 0]] = True
+    # A chain starts where nothing precedes; a closed curve at its lowest parameter.
+    order = np.lexsort((t0, has_predecessor, label))
+    first = order[np.searchsorted(label[order], np.arange(n))]
+    start = t0[first]
+    width = np.bincount(label, t1 - t0, n)
+    # Where the curve has no wrap the end is the last edge's own parameter, to the bit.
+    over = t1 + 2 * np.pi * (t0 < start[label])
+    end = np.full(n, -np.inf)
+    np.maximum.at(end, label, np.where(arrangement.pieces.curves.kind[source] == ARC, over, t1))
+    last = np.lexsort((np.arange(len(kept)), follower >= 0, label))
+    last = last[np.searchsorted(label[last], np.arange(n))]
+    closed = follower[last] >= 0
+    final = np.where(closed, tail[first], head[last])
+    end = np.where(np.abs(end - start - width) < 1e-6 * np.abs(width), end, start + width)
+    return Chains(
+        source[first], start, end, tail[first], final, left[first], right[first], marker[first],
+        names,
+    )  # fmt: skip
+
+
+def _followers(
+    arrangement: Arrangement,
+    tail: np.ndarray,
+    head: np.ndarray,
+    source: np.ndarray,
+    t0: np.ndarray,
+    t1: np.ndarray,
+    left: np.ndarray,
+    right: np.ndarray,
+    marker: np.ndarray,
+) -> np.ndarray:
+    """The edge that continues each edge through a vertex that is no corner, or -1."""
+    n = len(arrangement.vertices)
+    degree = np.bincount(tail, minlength=n) + np.bincount(head, minlength=n)
+    degree[arrangement.probe_vertex] = 0
+    leaving = np.full(n, -1)
+    leaving[tail] = np.arange(len(tail))
+    candidate = leaving[head]
+    ok = (degree[head] == 2) & (candidate >= 0)
+    c = np.where(ok, candidate, 0)
+    gap = t0[c] - t1 if len(c) else t1
+    arc = arrangement.pieces.curves.kind[source] == ARC
+    gap = np.where(arc, gap - 2 * np.pi * np.round(gap / (2 * np.pi)), gap)
+    ok &= (source[c] == source) & (np.abs(gap) <= 1e-9 * np.maximum(1.0, np.abs(t1)))
+    ok &= (left[c] == left) & (right[c] == right) & (marker[c] == marker)
+    return np.where(ok, candidate, -1)
+
+
+def _runs(n: int, follower: np.ndarray) -> np.ndarray:
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import connected_components
+
+    at = np.flatnonzero(follower >= 0)
+    graph = coo_array((np.ones(len(at), np.int8), (at, follower[at])), shape=(n, n))
+    _, label = connected_components(graph, directed=False)
+    # Number chains by their first edge.
+    _, first, back = np.unique(label, return_index=True, return_inverse=True)
+    rank = np.empty(len(first), np.int64)
+    rank[np.argsort(first)] = np.arange(len(first))
+    return rank[back]
+
+
+def _nothing_left(program: Program) -> str:
+    labels = [leaf.label for leaf in program.leaves[:6]]
+    more = ", …" if len(program.leaves) > 6 else ""
+    return (
+        "the domain is empty: nothing with an interior is left of "
+        f"{', '.join(labels)}{more}"
+    )
+
+
+def _reaches_out(program: Program, arrangement: Arrangement, free: np.ndarray) -> str:
+    where = ""
+    if len(free):
+        a = arrangement.points[arrangement.tail[free[0]]]
+        b = arrangement.points[arrangement.head[free[0]]]
+        x, y = 0.5 * (a + b)
+        where = f" beyond ({x:.6g}, {y:.6g})"
+    open_leaves = [leaf.label for leaf in program.leaves if leaf.primitive.kind == "half_space"]
+    reason = f"; unbounded leaves: {', '.join(open_leaves[:6])}" if open_leaves else ""
+    return (
+        f"the domain is unbounded{where}: a mesh needs a bounded one{reason}; "
+        "intersect it with a bounded shape"
+    )

@@ -1,0 +1,319 @@
+"""Chains become chords: fine enough for the deviation, and never crossing what their curves do not.
+
+Between a chord and its curve lies a lens. Where another chord crosses the chord, or one of its
+points lies in the lens, the chord is halved: two arcs nearer to each other than the chord error
+are resolved by finer chords.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from csgmesh.boundary.arrangement import Arrangement
+from csgmesh.boundary.chains import Chains
+from csgmesh.boundary.pieces import Frame
+from csgmesh.domain.curves import CUBIC, LINE, Curves, cross
+from csgmesh.errors import EvaluationError, ShapeError
+from csgmesh.spatial import Boxes
+from csgmesh.tolerance import DEVIATION_SHARE
+
+#: Largest turning of a curve over one chord, in radians: diametral circles protect curves that
+#: turn less, and a closed curve needs three chords to be one.
+_TURN = np.pi / 4
+
+_ROUNDS = 64
+
+
+@dataclass(frozen=True, eq=False)
+class Chords:
+    """Straight pieces of chains, in the order of chains and parameters.
+
+    Attributes
+    ----------
+    chain : (m,) int64
+    t0, t1 : (m,) float64
+        Curve parameters at both ends.
+    tail, head : (m,) int64
+        Points; numbers below the number of vertices are vertices of the arrangement.
+    points : (n, 2) float64
+        In local coordinates, the arrangement's vertices first.
+    user : (n, 2) float64
+        In user coordinates.
+    """
+
+    chain: np.ndarray
+    t0: np.ndarray
+    t1: np.ndarray
+    tail: np.ndarray
+    head: np.ndarray
+    points: np.ndarray
+    user: np.ndarray
+
+
+def flatten(
+    arrangement: Arrangement, chains: Chains, frame: Frame, deviation: float | None, snap: float
+) -> Chords:
+    """Chords of all chains.
+
+    Parameters
+    ----------
+    arrangement : Arrangement
+    chains : Chains
+    frame : Frame
+    deviation : float, optional
+        Largest distance of a chord from its curve in user coordinates; a share of the leaf's extent
+        by default.
+    snap : float
+        In local coordinates.
+
+    Raises
+    ------
+    EvaluationError
+        If chords cross that no refinement separates; the message says where.
+    """
+    counts = _chord_counts(arrangement, chains, deviation)
+    chain = np.repeat(np.arange(len(counts)), counts)
+    step = np.arange(len(chain)) - np.repeat(np.cumsum(counts) - counts, counts)
+    share0, share1 = step / counts[chain], (step + 1) / counts[chain]
+    t0, t1 = chains.t0[chain], chains.t1[chain]
+    chords = _chords(arrangement, chains, chain, t0 + share0 * (t1 - t0), step + 1 == counts[chain])
+    suspects = _suspect_chains(arrangement, chains, snap)
+    if len(suspects) == 0:
+        return chords
+    for _ in range(_ROUNDS):
+        halve, stuck = _conflicts(arrangement, chains, chords, suspects, snap)
+        if not halve.any():
+            break
+        t0 = chords.t0
+        middle = 0.5 * (t0 + chords.t1)[halve]
+        at = np.flatnonzero(halve) + 1
+        chain, t0 = np.insert(chords.chain, at, chords.chain[halve]), np.insert(t0, at, middle)
+        chords = _chords(arrangement, chains, chain, t0, np.r_[chain[1:] != chain[:-1], True])
+    if stuck.any():
+        x, y = chords.user[chords.tail[np.flatnonzero(stuck)[0]]]
+        raise EvaluationError(
+            f"boundaries near ({x:.6g}, {y:.6g}) come closer than rounding can keep apart; "
+            "give a larger snap"
+        )
+    return chords
+
+
+def _chord_counts(arrangement: Arrangement, chains: Chains, deviation: float | None) -> np.ndarray:
+    if deviation is not None and not (np.isfinite(deviation) and deviation > 0):
+        raise ShapeError(f"deviation must be positive and finite, got {deviation!r}")
+    pieces = arrangement.pieces
+    width = chains.t1 - chains.t0
+    bend = pieces.curves.second_derivative_bounds()[chains.source]
+    share = DEVIATION_SHARE * pieces.extent[chains.source]
+    allowed = np.full(len(width), deviation) if deviation is not None else share
+    with np.errstate(invalid="ignore", divide="ignore"):
+        counts = np.ceil(np.sqrt(width**2 * bend / (8 * allowed)) * (1 - 1e-12))
+    if not (counts < 1e8).all():
+        raise ShapeError(f"deviation {deviation!r} asks for more than 1e8 chords a curve")
+    counts = np.maximum(counts, np.ceil(_turning(pieces.curves, chains) / _TURN * (1 - 1e-12)))
+    # A curve that is straight to within its deviation still needs its two ends to differ.
+    counts = np.maximum(counts, np.where(chains.tail == chains.head, 3, 1))
+    return counts.astype(np.int64)
+
+
+def _turning(curves: Curves, chains: Chains) -> np.ndarray:
+    """Total turning of the tangent along each chain, in radians."""
+    out = np.zeros(len(chains.source))
+    bent = np.flatnonzero(curves.kind[chains.source] != LINE)
+    n = 17
+    t = chains.t0[bent, None] + (chains.t1 - chains.t0)[bent, None] * np.linspace(0, 1, n)
+    d = curves.derivatives(np.repeat(chains.source[bent], n), t.ravel()).reshape(-1, n, 2)
+    a, b = d[:, :-1].reshape(-1, 2), d[:, 1:].reshape(-1, 2)
+    turn = np.abs(np.arctan2(cross(a, b), (a * b).sum(1)))
+    out[bent] = turn.reshape(-1, n - 1).sum(1)
+    return out
+
+
+def _chords(
+    arrangement: Arrangement, chains: Chains, chain: np.ndarray, t0: np.ndarray, last: np.ndarray
+) -> Chords:
+    first = np.r_[True, last[:-1]]
+    nv = len(arrangement.vertices)
+    tail = np.empty(len(chain), np.int64)
+    tail[first] = chains.tail[chain[first]]
+    inner = np.flatnonzero(~first)
+    tail[inner] = nv + np.arange(len(inner))
+    head = np.r_[tail[1:], -1]
+    head[last] = chains.head[chain[last]]
+    t1 = np.r_[t0[1:], 0.0]
+    t1[last] = chains.t1[chain[last]]
+    source = chains.source[chain[inner]]
+    pieces = arrangement.pieces
+    points = np.concatenate([arrangement.vertices, pieces.local.points(source, t0[inner])])
+    user = np.concatenate([arrangement.points, pieces.curves.points(source, t0[inner])])
+    return Chords(chain, t0, t1, tail, head, points, user)
+
+
+def _suspect_chains(arrangement: Arrangement, chains: Chains, snap: float) -> np.ndarray:
+    """Pairs of chains, at least one of them bent, that may come near each other, (k, 2)."""
+    pieces = arrangement.pieces
+    interval = np.column_stack([chains.t0, chains.t1])
+    local = pieces.local[chains.source]
+    lo, hi = Curves(local.kind, local.data, interval).bounds()
+    pair = Boxes(lo - snap, hi + snap).pairs()
+    bent = local.kind != LINE
+    pair = pair[bent[pair].any(1)]
+    # A cubic may come near itself; lines, arcs and quadratics are convex.
+    own = np.flatnonzero(local.kind == CUBIC)
+    return np.concatenate([pair, np.column_stack([own, own])])
+
+
+def _conflicts(
+    arrangement: Arrangement, chains: Chains, chords: Chords, suspects: np.ndarray, snap: float
+) -> tuple[np.ndarray, np.ndarray]:
+    """Chords to halve, and chords in conflict that are straight to within rounding already."""
+    local = arrangement.pieces.local
+    source = chains.source[chords.chain]
+    sag = (chords.t1 - chords.t0) ** 2 * local.second_derivative_bounds()[source] / 8
+    pair = _near_chords(chains, chords, suspects, sag)
+    i, j = pair.T
+    shared = _shared(chords, i, j)
+    bad = np.zeros(len(pair), bool)
+    bad[shared == 2] = True
+    at = np.flatnonzero(shared == 0)
+    bad[at] = _touch(chords, i[at], j[at])
+    at = np.flatnonzero(shared == 1)
+    bad[at] = _disordered(local, source, chords, i[at], j[at])
+    halve = np.zeros(len(chords.chain), bool)
+    smallest = snap / 256
+    big_i, big_j = sag[i] >= sag[j] / 2, sag[j] >= sag[i] / 2
+    halve[i[bad & big_i]] = True
+    halve[j[bad & big_j]] = True
+    for a, b in ((i, j), (j, i)):
+        bulging = np.flatnonzero(sag[a] > smallest)
+        inside = _in_lens(local, source, chords, a[bulging], b[bulging], snap)
+        halve[a[bulging[inside]]] = True
+    stuck = halve & (sag <= smallest)
+    return halve & ~stuck, stuck
+
+
+def _near_chords(
+    chains: Chains, chords: Chords, suspects: np.ndarray, sag: np.ndarray
+) -> np.ndarray:
+    """Pairs of chords of suspect chains whose lenses' boxes overlap, (k, 2)."""
+    n = len(chains.source)
+    involved = np.zeros(n, bool)
+    involved[suspects] = True
+    at = np.flatnonzero(involved[chords.chain])
+    a, b = chords.points[chords.tail[at]], chords.points[chords.head[at]]
+    reach = sag[at, None]
+    pair = at[Boxes(np.minimum(a, b) - reach, np.maximum(a, b) + reach).pairs()]
+    ends = np.sort(chords.chain[pair], axis=1)
+    wanted = np.unique(suspects[:, 0] * n + suspects[:, 1])
+    key = ends[:, 0] * n + ends[:, 1]
+    place = np.minimum(np.searchsorted(wanted, key), len(wanted) - 1)
+    pair = pair[wanted[place] == key]
+    # Neighbours on one curve meet at their common point and nowhere else.
+    same = chords.chain[pair[:, 0]] == chords.chain[pair[:, 1]]
+    return pair[~(same & (_shared(chords, *pair.T) > 0))]
+
+
+def _shared(chords: Chords, i: np.ndarray, j: np.ndarray) -> np.ndarray:
+    count = np.zeros(len(i), np.int64)
+    for x in (chords.tail[i], chords.head[i]):
+        count += (x == chords.tail[j]) | (x == chords.head[j])
+    return count
+
+
+def _touch(chords: Chords, i: np.ndarray, j: np.ndarray) -> np.ndarray:
+    """Whether chords without a common end cross or touch, rounding counted as touching."""
+    p, q = chords.points[chords.tail[i]], chords.points[chords.head[i]]
+    r, s = chords.points[chords.tail[j]], chords.points[chords.head[j]]
+
+    def same_side(a: np.ndarray, b: np.ndarray, c: np.ndarray, d: np.ndarray) -> np.ndarray:
+        along = b - a
+        x, y = cross(along, c - a), cross(along, d - a)
+        noise = 8 * np.finfo(float).eps * np.abs(along).sum(1)
+        return ((x > noise) & (y > noise)) | ((x < -noise) & (y < -noise))
+
+    return ~(same_side(p, q, r, s) | same_side(r, s, p, q) | _boxes_apart(p, q, r, s))
+
+
+def _boxes_apart(p: np.ndarray, q: np.ndarray, r: np.ndarray, s: np.ndarray) -> np.ndarray:
+    below = np.maximum(p, q) < np.minimum(r, s)
+    above = np.minimum(p, q) > np.maximum(r, s)
+    return (below | above).any(1)
+
+
+def _disordered(
+    local: Curves, source: np.ndarray, chords: Chords, i: np.ndarray, j: np.ndarray
+) -> np.ndarray:
+    """Whether chords from a common point leave it in another order than their curves."""
+    from_head_i = (chords.head[i] == chords.tail[j]) | (chords.head[i] == chords.head[j])
+    from_head_j = (chords.head[j] == chords.tail[i]) | (chords.head[j] == chords.head[i])
+    origin = chords.points[np.where(from_head_i, chords.head[i], chords.tail[i])]
+    d_i = chords.points[np.where(from_head_i, chords.tail[i], chords.head[i])] - origin
+    d_j = chords.points[np.where(from_head_j, chords.tail[j], chords.head[j])] - origin
+    reach = np.minimum(np.hypot(*d_i.T), np.hypot(*d_j.T))
+    turn = cross(d_i, d_j)
+    true = np.zeros(len(i))
+    # Chords at a wide angle are in order whatever their curves do.
+    narrow = np.flatnonzero((d_i * d_j).sum(1) > 0)
+    if len(narrow):
+        k = narrow
+        p = _along(local, source, chords, i[k], from_head_i[k], reach[k])
+        q = _along(local, source, chords, j[k], from_head_j[k], reach[k])
+        true[k] = cross(p, q)
+    noise = 8 * np.finfo(float).eps * np.abs(d_i).sum(1)
+    out = np.zeros(len(i), bool)
+    out[narrow] = ((np.abs(turn) <= noise) | (np.sign(turn) != np.sign(true)))[narrow]
+    return out
+
+
+def _along(
+    local: Curves,
+    source: np.ndarray,
+    chords: Chords,
+    k: np.ndarray,
+    from_head: np.ndarray,
+    reach: np.ndarray,
+) -> np.ndarray:
+    """Curve points at a distance from an end of a chord, relative to that end of the curve."""
+    start = np.where(from_head, chords.t1[k], chords.t0[k])
+    end = np.where(from_head, chords.t0[k], chords.t1[k])
+    origin = local.points(source[k], start)
+    low, high = np.zeros(len(k)), np.ones(len(k))
+    for _ in range(50):
+        middle = 0.5 * (low + high)
+        p = local.points(source[k], start + middle * (end - start))
+        near = np.hypot(*(p - origin).T) < reach
+        low, high = np.where(near, middle, low), np.where(near, high, middle)
+    return local.points(source[k], start + high * (end - start)) - origin
+
+
+def _in_lens(
+    local: Curves, source: np.ndarray, chords: Chords, i: np.ndarray, j: np.ndarray, snap: float
+) -> np.ndarray:
+    """Whether a point of chord j's curve lies between chord i and its curve."""
+    a, b = chords.points[chords.tail[i]], chords.points[chords.head[i]]
+    along = b - a
+    middle = 0.5 * (chords.t0 + chords.t1)
+    bulge = np.sign(cross(along, local.points(source[i], middle[i]) - a))
+    out = np.zeros(len(i), bool)
+    tips = (
+        (chords.points[chords.tail[j]], chords.tail[j]),
+        (chords.points[chords.head[j]], chords.head[j]),
+        (local.points(source[j], middle[j]), np.full(len(j), -1)),
+    )
+    for q, number in tips:
+        shared = (number == chords.tail[i]) | (number == chords.head[i])
+        along_share = ((q - a) * along).sum(1) / (along * along).sum(1)
+        side = cross(along, q - a) * bulge
+        k = np.flatnonzero(~shared & ~out & (side >= 0) & (along_share > 0) & (along_share < 1))
+        if len(k) == 0:
+            continue
+        t = local.project(source[i[k]], q[k], chords.t0[i[k]], chords.t1[i[k]])
+        off = q[k] - local.points(source[i[k]], t)
+        beyond = cross(local.derivatives(source[i[k]], t), off) * bulge[k]
+        # Seen along the curve, the chord lies to the left where the curve bulges to the right.
+        out[k] = beyond < 0
+    return out
+
+
