@@ -7,6 +7,7 @@
     │   ├── ShapeError                  an argument of a shape or of an operation on shapes
     │   ├── NameLookupError (KeyError)  a name, prefix or glob that matches nothing
     │   ├── DomainFileError             a YAML domain file; carries file, line and column
+    │   ├── ExpressionError             arithmetic in a domain file; carries the offset in its text
     │   ├── FileFormatError             a mesh or picture file that cannot be read or written
     │   └── SizeError                   a size that is not positive and finite; carries the point
     ├── EvaluationError                 the tree has no usable boundary; exit code 3
@@ -53,6 +54,14 @@ class DomainFileError(InputError):
         place = ":".join(str(p) for p in (file, line, column) if p)
         super().__init__(f"{place}: {message}" if place else message)
         self.file, self.line, self.column = file, line, column
+
+
+class ExpressionError(InputError):
+    """An arithmetic expression is wrong; `offset` counts characters from the start of its text."""
+
+    def __init__(self, message: str, *, offset: int = 0) -> None:
+        super().__init__(message)
+        self.offset = offset
 
 
 class FileFormatError(InputError):

@@ -26,6 +26,10 @@ EXCUSED_ANGLE = 60.0
 #: coordinates, so only rounding separates them.
 AREA_SHARE = 1e-12
 
+#: Agreement of a length or area with the value that a test expects: people copy expected values
+#: from prints of about ten digits.
+EXPECTED_SHARE = 1e-9
+
 
 def coordinate_ulp(*arrays: np.ndarray) -> float:
     """`ULPS` units in the last place of the largest coordinate.

@@ -34,7 +34,7 @@ def approaches(
     if len(pairs) == 0:
         return pairs.reshape(-1, 2), np.zeros((0, 2))
     row, interval = _subdivide(pieces, pairs, snap)
-    return _polish(pieces, pairs[row], interval.mean(axis=2), snap)
+    return _polish(pieces, pairs[row], interval, snap)
 
 
 def _coincide(pieces: Pieces, pairs: np.ndarray, snap: float) -> np.ndarray:
@@ -121,15 +121,15 @@ def _may_meet(
 
 
 def _polish(
-    pieces: Pieces, rows: np.ndarray, t: np.ndarray, snap: float
+    pieces: Pieces, rows: np.ndarray, interval: np.ndarray, snap: float
 ) -> tuple[np.ndarray, np.ndarray]:
     local = pieces.local
+    t, width = interval.mean(axis=2), interval[:, :, 1] - interval[:, :, 0]
     i, j = pieces.source[rows].T
     lo, hi = pieces.lo[rows], pieces.hi[rows]
     crossing = _newton_crossing(local, i, j, t.copy(), lo, hi)
     gap = np.hypot(*(local.points(i, crossing[:, 0]) - local.points(j, crossing[:, 1])).T)
-    moved = np.hypot(*(local.points(i, crossing[:, 0]) - local.points(i, t[:, 0])).T)
-    crossed = (gap <= 1e-14) & (moved <= 1e4 * snap)
+    crossed = (gap <= 1e-14) & (np.abs(crossing - t) <= 2 * width).all(1)
     nearest = _nearest(local, i, j, t.copy(), lo, hi)
     best = np.where(crossed[:, None], crossing, nearest)
     # Neighbouring leaves of the subdivision find the same point: keep one of each.

@@ -183,9 +183,9 @@ def _conflicts(
     bad[at] = _disordered(local, source, chords, i[at], j[at])
     halve = np.zeros(len(chords.chain), bool)
     smallest = snap / 256
-    big_i, big_j = sag[i] >= sag[j] / 2, sag[j] >= sag[i] / 2
-    halve[i[bad & big_i]] = True
-    halve[j[bad & big_j]] = True
+    # One at a time: halving both of two tangent arcs alike would leave them as alike as before.
+    larger = np.where(sag[i] >= sag[j], i, j)
+    halve[larger[bad]] = True
     for a, b in ((i, j), (j, i)):
         bulging = np.flatnonzero(sag[a] > smallest)
         inside = _in_lens(local, source, chords, a[bulging], b[bulging], snap)

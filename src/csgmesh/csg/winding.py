@@ -166,11 +166,11 @@ def _resolution(pieces: _Pieces, extent: np.ndarray) -> tuple[int, int]:
     travelled = np.abs(pieces.p1 - pieces.p0).sum(axis=0)
     wanted = np.maximum(n * extent / np.maximum(travelled, np.finfo(float).tiny), 1.0)
     limit = 2.0 * n + 16.0
-    for axis in (int(np.argmin(wanted)), int(np.argmax(wanted))):
-        room = limit / max(wanted[1 - axis], 1.0)
-        share = np.sqrt(limit / (wanted[0] * wanted[1]))
-        wanted[axis] = max(min(wanted[axis], max(room, wanted[axis] * min(share, 1.0))), 1.0)
-    return int(wanted[0]), int(wanted[1])
+    fewer = wanted * min(np.sqrt(limit / wanted.prod()), 1.0)
+    narrow = int(np.argmin(fewer))
+    if fewer[narrow] < 1.0:
+        fewer[narrow], fewer[1 - narrow] = 1.0, min(wanted[1 - narrow], limit)
+    return int(fewer[0]), int(fewer[1])
 
 
 def _row_entries(

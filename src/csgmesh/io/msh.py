@@ -167,7 +167,7 @@ class _Binary:
         self.file.write(b"".join(np.asarray(values, code).tobytes() for code, values in fields))
 
     def table(self, code: str, values: np.ndarray) -> None:
-        self.file.write(memoryview(np.ascontiguousarray(values, code).reshape(-1)).cast("B"))
+        self.file.write(np.ascontiguousarray(values, code).data)
 
     def end(self) -> None:
         self.file.write(b"\n")

@@ -11,6 +11,7 @@ import zipfile
 import zlib
 from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -58,7 +59,7 @@ def read(path: Path) -> Mesh:
     """Read an ``.npz`` file that `write` made."""
     arrays = _arrays(path)
     header = _header(path, arrays)
-    fields: dict[str, object] = {"info": header["info"]}
+    fields: dict[str, Any] = {"info": header["info"]}
     for group, kinds in ((_CELLS, header["cell_kinds"]), (_FACETS, header["facet_kinds"])):
         for name in group:
             fields[name] = {kind: _needed(path, arrays, f"{name}.{kind}") for kind in kinds}

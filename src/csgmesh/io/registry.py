@@ -14,7 +14,7 @@ from pathlib import Path
 from types import MappingProxyType, ModuleType
 
 from csgmesh.errors import FileFormatError, InputError
-from csgmesh.io.files import replaced
+from csgmesh.files import replaced
 from csgmesh.mesh import Mesh
 from csgmesh.options import check_options, near
 

@@ -102,8 +102,13 @@ class VtuFile:
         for name in ("region", "marker"):
             if piece.find(f"CellData/DataArray[@Name='{name}']") is not None:
                 data[name] = self._needed(piece, f"CellData/DataArray[@Name='{name}']", n_cells)
-        as_index = (a.astype(np.int64) for a in (connectivity, offsets, types))
-        return Grid(points.astype(np.float64), *as_index, data)
+        return Grid(
+            points.astype(np.float64),
+            connectivity.astype(np.int64),
+            offsets.astype(np.int64),
+            types.astype(np.int64),
+            data,
+        )
 
     def _count(self, piece: ElementTree.Element, name: str) -> int:
         text = piece.get(name, "")

@@ -30,7 +30,7 @@ def frozen(name: str, value: ArrayLike, dtype: type, shape: tuple[int | None, ..
     )
     if not fits:
         raise InputError(f"{name} must have shape {_shape(shape)}; got {given.shape}")
-    array = np.ascontiguousarray(given, dtype=dtype)
+    array: np.ndarray = np.ascontiguousarray(given, dtype=dtype)
     if array.flags.writeable:
         is_theirs = isinstance(value, np.ndarray) and np.may_share_memory(array, value)
         array = array.copy() if is_theirs else array

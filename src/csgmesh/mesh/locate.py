@@ -187,7 +187,8 @@ def _cut_quads(points: np.ndarray, quads: np.ndarray) -> np.ndarray:
     first = np.stack([quads[:, [0, 1, 2]], quads[:, [0, 2, 3]]], axis=1)
     second = np.stack([quads[:, [1, 2, 3]], quads[:, [1, 3, 0]]], axis=1)
     signs = orientations(points, first.reshape(-1, 3)).reshape(-1, 2)
-    return np.where((signs > 0).all(axis=1)[:, None, None], first, second)
+    fits = (signs > 0).all(axis=1).reshape(-1, 1, 1)
+    return np.where(fits, first, second)
 
 
 def _grid(

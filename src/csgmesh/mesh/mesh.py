@@ -82,7 +82,7 @@ class Mesh:
     facet_region: Arrays = field(default_factory=dict)
     facet_curve: Arrays = field(default_factory=dict)
     facet_interval: Arrays = field(default_factory=dict)
-    point_marker: np.ndarray | None = None
+    point_marker: np.ndarray = field(default_factory=lambda: np.zeros(0, np.int64))
     curves: Curves | None = None
     domain: Pslg | None = None
     info: Mapping[str, object] = field(default_factory=dict)
@@ -93,7 +93,7 @@ class Mesh:
         cells = connectivity("cells", self.cells, tuple(range(2, dim + 1)))
         facets = connectivity("facets", self.facets, (dim - 1,))
         marker = self.point_marker
-        if marker is None:
+        if not np.size(marker):
             marker = np.full(len(points), -1)
         new: dict[str, Any] = {
             "points": points,
@@ -284,7 +284,7 @@ class Mesh:
         >>> mesh.locate([[0.5, 0.5], [0.6, 0.5]])
         array([ 0, -1])
         """
-        return self._locator.cells_of(points)
+        return self.locator.cells_of(points)
 
     def interpolate(self, values: ArrayLike, points: ArrayLike) -> np.ndarray:
         """Values at points, linear on triangles (bilinear on quads) from values at the vertices.
@@ -313,7 +313,7 @@ class Mesh:
         >>> mesh.interpolate([0, 1, 2], [[0.5, 0.5], [2, 2]])
         array([1.5, nan])
         """
-        return self._locator.interpolate(values, points)
+        return self.locator.interpolate(values, points)
 
     def equals(self, other: Mesh) -> bool:
         """Whether all arrays and names are the same, to the last bit (`info` is not compared).
@@ -347,7 +347,8 @@ class Mesh:
         return np.array([i for i, name in enumerate(self.region_names) if name in found])
 
     @cached_property
-    def _locator(self) -> Locator:
+    def locator(self) -> Locator:
+        """Search structure behind `locate`, built at its first use."""
         from csgmesh.mesh.locate import Locator
 
         if self.dim != 2:

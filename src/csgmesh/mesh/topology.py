@@ -133,7 +133,7 @@ def components(edges: Edges, is_open: np.ndarray | None = None) -> tuple[int, np
     passes = (edges.left >= 0) & (edges.right >= 0)
     if is_open is not None:
         passes &= is_open
-    return _connected(edges.n_cells, edges.left[passes], edges.right[passes])
+    return connected(edges.n_cells, edges.left[passes], edges.right[passes])
 
 
 def interior_euler(edges: Edges, component: np.ndarray, is_open: np.ndarray) -> np.ndarray:
@@ -192,7 +192,7 @@ def _fans(edges: Edges, through: np.ndarray) -> tuple[np.ndarray, int]:
     twin[forwards] = back[edges.half_edge_edge[forwards]]
     twin[~forwards] = ahead[edges.half_edge_edge[~forwards]]
     at = np.flatnonzero(through[edges.half_edge_edge])
-    count, fan = _connected(n, at, after[twin[at]])
+    count, fan = connected(n, at, after[twin[at]])
     return fan, count
 
 
@@ -208,7 +208,8 @@ def _next_half_edge(edges: Edges) -> np.ndarray:
     return follow
 
 
-def _connected(n: int, a: np.ndarray, b: np.ndarray) -> tuple[int, np.ndarray]:
+def connected(n: int, a: np.ndarray, b: np.ndarray) -> tuple[int, np.ndarray]:
+    """Number of components of a graph of `n` vertices and edges (a, b), and each vertex's."""
     from scipy.sparse import coo_array
     from scipy.sparse.csgraph import connected_components
 
