@@ -1,0 +1,133 @@
+"""csgmesh: constructive solid geometry to meshes that a solver can trust.
+
+>>> import csgmesh as cm
+>>> plate = cm.Box((0, 0), (4, 2), name="plate") - cm.Disk((2, 1), 0.5, name="hole")
+>>> mesh = cm.generate(plate, cm.DelaunayRefinement(min_angle=30), size={"hole": 0.05, "default": 0.2})
+>>> mesh.names
+('plate.left', 'plate.right', 'plate.bottom', 'plate.top', 'hole')
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+__version__ = "0.1.0"
+
+#: Where each public name lives. Nothing is imported before it is used.
+_HOME = {
+    "csgmesh.boundary": ("evaluate",),
+    "csgmesh.csg": (
+        "Box",
+        "Disk",
+        "Ellipse",
+        "Embed",
+        "EmbeddedPath",
+        "EmbeddedPoints",
+        "HalfSpace",
+        "Outline",
+        "Polygon",
+        "Primitive",
+        "Regions",
+        "RegularPolygon",
+        "Shape",
+        "Triangle",
+        "difference",
+        "intersection",
+        "symmetric_difference",
+        "union",
+    ),
+    "csgmesh.domain": ("Pslg",),
+    "csgmesh.domainfile": ("DomainFile", "load"),
+    "csgmesh.errors": (
+        "BudgetError",
+        "CsgmeshError",
+        "DomainFileError",
+        "EmptyDomainError",
+        "EvaluationError",
+        "FileFormatError",
+        "InputError",
+        "MeshingError",
+        "NameLookupError",
+        "ShapeError",
+        "SizeError",
+        "UnboundedDomainError",
+    ),
+    "csgmesh.io": ("from_meshio", "read", "to_meshio", "to_skfem", "write"),
+    "csgmesh.measures": ("Certificate", "Quality", "quality"),
+    "csgmesh.mesh": ("Mesh",),
+    "csgmesh.meshers": ("ConstrainedDelaunay", "DelaunayRefinement"),
+    "csgmesh.pipeline": ("check", "generate"),
+    "csgmesh.size": ("SizeField", "UniformSize"),
+    "csgmesh.viz": ("draw",),
+}
+
+_MODULE_OF = {name: module for module, names in _HOME.items() for name in names}
+
+__all__ = sorted(_MODULE_OF)  # noqa: PLE0605
+
+if TYPE_CHECKING:
+    from csgmesh.boundary import evaluate
+    from csgmesh.csg import (
+        Box,
+        Disk,
+        Ellipse,
+        Embed,
+        EmbeddedPath,
+        EmbeddedPoints,
+        HalfSpace,
+        Outline,
+        Polygon,
+        Primitive,
+        Regions,
+        RegularPolygon,
+        Shape,
+        Triangle,
+        difference,
+        intersection,
+        symmetric_difference,
+        union,
+    )
+    from csgmesh.domain import Pslg
+    from csgmesh.domainfile import DomainFile, load
+    from csgmesh.errors import (
+        BudgetError,
+        CsgmeshError,
+        DomainFileError,
+        EmptyDomainError,
+        EvaluationError,
+        FileFormatError,
+        InputError,
+        MeshingError,
+        NameLookupError,
+        ShapeError,
+        SizeError,
+        UnboundedDomainError,
+    )
+    from csgmesh.io import from_meshio, read, to_meshio, to_skfem, write
+    from csgmesh.measures import Certificate, Quality, quality
+    from csgmesh.mesh import Mesh
+    from csgmesh.meshers import ConstrainedDelaunay, DelaunayRefinement
+    from csgmesh.pipeline import check, generate
+    from csgmesh.size import SizeField, UniformSize
+    from csgmesh.viz import draw
+
+
+def __getattr__(name: str) -> Any:
+    module = _MODULE_OF.get(name)
+    if module is None:
+        raise AttributeError(f"module 'csgmesh' has no attribute {name!r}")
+    value = getattr(import_module(module), name)
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})
+
+
+def load_ipython_extension(ipython: Any) -> None:
+    """Show shapes, domains and meshes as pictures: ``%load_ext csgmesh``."""
+    from csgmesh.viz.notebook import register
+
+    register(ipython)

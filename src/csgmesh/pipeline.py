@@ -1,0 +1,124 @@
+"""From a shape to its mesh: the only place that knows every stage."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any, Protocol
+
+from csgmesh.boundary import evaluate
+from csgmesh.errors import InputError
+
+if TYPE_CHECKING:
+    from csgmesh.domain.pslg import Pslg
+    from csgmesh.measures.certificate import Certificate
+    from csgmesh.mesh import Mesh
+
+Progress = Callable[[str, int, int], None]
+
+
+class Mesher(Protocol):
+    """A method: an immutable object of options with one verb."""
+
+    def generate(
+        self, domain: Pslg, size: Any = None, progress: Progress | None = None
+    ) -> Mesh:
+        """The mesh of a domain."""
+
+
+def generate(
+    shape: Any,
+    mesher: Mesher | None = None,
+    size: Any = None,
+    *,
+    deviation: float | None = None,
+    snap: float | None = None,
+    progress: Progress | None = None,
+) -> Mesh:
+    """Mesh a shape.
+
+    Parameters
+    ----------
+    shape : Shape, Regions, Embed or Pslg
+        What to mesh.
+    mesher : object with ``generate``, optional
+        How: `DelaunayRefinement` unless given.
+    size : float, mapping, callable or SizeField, optional
+        Wanted edge length in coordinate units: a number; a mapping of names of boundaries or regions
+        to numbers with ``"default"``; a callable ``h(points (n, 2)) -> (n,)``. Without it curvature,
+        feature size and gradation decide.
+    deviation : float, optional
+        Largest distance between a facet and its exact curve; see `evaluate`.
+    snap : float, optional
+        Distance below which points merge; see `evaluate`.
+    progress : callable, optional
+        Called as ``progress(stage, done, total)``; an exception it raises stops the work.
+
+    Returns
+    -------
+    Mesh
+
+    Raises
+    ------
+    InputError
+        If an argument breaks a rule.
+    EvaluationError
+        If the shape has no boundary that could be meshed.
+    MeshingError
+        If the mesher cannot do it; a `BudgetError` carries the mesh so far.
+
+    Examples
+    --------
+    >>> import csgmesh as cm
+    >>> mesh = cm.generate(cm.Box((0, 0), (2, 1)) - cm.Disk((1, 0.5), 0.25), size=0.2)
+    >>> mesh.names
+    ('box.left', 'box.right', 'box.bottom', 'box.top', 'disk')
+    """
+    if mesher is None:
+        from csgmesh.meshers import DelaunayRefinement
+
+        mesher = DelaunayRefinement()
+    elif isinstance(mesher, type) or not callable(getattr(mesher, "generate", None)):
+        raise InputError(
+            f"mesher must be an object such as DelaunayRefinement(min_angle=30), got {mesher!r}"
+        )
+    if progress is not None:
+        progress("evaluate", 0, 1)
+    domain = evaluate(shape, deviation=deviation, snap=snap)
+    if progress is not None:
+        progress("evaluate", 1, 1)
+    return mesher.generate(domain, size, progress)
+
+
+def check(mesh: Mesh, shape: Any = None) -> Certificate:
+    """Verify a mesh.
+
+    Parameters
+    ----------
+    mesh : Mesh
+    shape : Shape, Regions, Embed or Pslg, optional
+        With it nothing of the mesh is trusted but coordinates and connectivity: the shape is
+        evaluated anew, and 1e5 points are compared with the tree itself.
+
+    Returns
+    -------
+    Certificate
+        ``.ok``, ``.failures``, ``.to_json()``; printing it shows every rule.
+
+    Examples
+    --------
+    >>> import csgmesh as cm
+    >>> plate = cm.Box((0, 0), (2, 1)) - cm.Disk((1, 0.5), 0.25)
+    >>> cm.check(cm.generate(plate, size=0.2), plate).ok
+    True
+    """
+    from csgmesh.measures.certificate import check as verify
+
+    if shape is None:
+        return verify(mesh)
+    reference = evaluate(shape, deviation=_deviation_of(mesh))
+    contains = reference.oracle.region if reference.oracle is not None else None
+    return verify(mesh, reference, contains)
+
+
+def _deviation_of(mesh: Mesh) -> float | None:
+    return mesh.domain.deviation if mesh.domain is not None else None
