@@ -1,0 +1,62 @@
+"""Numba kernels: arrays in, arrays out, a status code; the only door to numba.
+
+Importing this package costs nothing. The first use of one of its functions imports numba and
+the kernels; the first call ever of a kernel compiles it, once, into a cache on disk.
+"""
+
+from __future__ import annotations
+
+import importlib
+import warnings
+from types import ModuleType
+from typing import Any
+
+from .cache import cache_directory, must_compile
+
+__all__ = ["cache_directory", "must_compile"]
+
+#: Exported name -> module that holds it.
+_HOME = {
+    "insert_points": "delaunay",
+    "curve_keys": "delaunay",
+    "recover_segments": "segments",
+    "flood_regions": "segments",
+    "refine": "refinement",
+    "extract": "export",
+    "limit_gradation": "gradation",
+    "orientations": "checks",
+    "delaunay_violations": "checks",
+    "locate": "checks",
+}
+
+
+def _load(name: str) -> ModuleType:
+    """Import a kernel module with the cache directory in place, and put the user's back."""
+    import numba
+
+    kept = numba.config.CACHE_DIR
+    try:
+        directory = cache_directory()
+        directory.mkdir(parents=True, exist_ok=True)
+        numba.config.CACHE_DIR = str(directory)
+        return importlib.import_module(f".{name}", __name__)
+    except (OSError, RuntimeError) as error:
+        warnings.warn(
+            f"compiled kernels cannot be kept, so each process compiles them anew: {error}",
+            RuntimeWarning,
+            stacklevel=3,
+        )
+        from . import pointers
+
+        pointers.ENTRY["cache"] = False
+        return importlib.import_module(f".{name}", __name__)
+    finally:
+        numba.config.CACHE_DIR = kept
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _HOME:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    value = getattr(_load(_HOME[name]), name)
+    globals()[name] = value
+    return value

@@ -1,0 +1,185 @@
+"""The shell around the refinement kernel."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from csgmesh import kernels
+from csgmesh.errors import MeshingError
+from csgmesh.meshers.workspace import BUDGET, ROOM, SLICE, STUCK, Workspace, grown
+from csgmesh.tolerance import coordinate_ulp
+
+#: Circumradius allowed and longest subsegment allowed, as shares of the wanted edge length:
+#: chosen so that the mean edge length comes out as wanted.
+CIRCLE_SHARE = 0.75
+SEGMENT_SHARE = 1.3
+#: The off-centre's angle is a little larger than asked for, so that rounding cannot spoil it
+#: (Shewchuk's choice in Triangle).
+OFF_CENTRE = 0.475
+
+N_BUCKETS = 1024
+#: Queue entries a cavity may need, per cavity slot.
+PER_CAVITY = 2
+
+
+class Refiner:
+    """Refines a workspace in place, in slices short enough for Ctrl-C and progress."""
+
+    def __init__(self, work: Workspace, min_angle: float, max_points: int) -> None:
+        self.work = work
+        self.max_points = max_points
+        cosine = np.cos(np.radians(min_angle))
+        diagonal = work.domain.diagonal
+        tiny = 4.0 * coordinate_ulp(work.domain.points)
+        off = OFF_CENTRE * np.sqrt((1.0 + cosine) / (1.0 - cosine)) if min_angle > 0 else 0.0
+        self.number = np.array(
+            [
+                cosine**2,
+                off,
+                CIRCLE_SHARE**2,
+                SEGMENT_SHARE**2,
+                0.0,
+                1.0 / diagonal**2,
+                tiny**2,
+            ]
+        )
+        n_sub = len(work.pieces.ends)
+        self.n_sub = n_sub
+        self.segment = work.pieces.segment.astype(np.int32)
+        self.interval = work.pieces.interval.reshape(-1).copy()
+        self.ends = work.ends
+        self.apex, self.apex_of, self.radius = work.sharp()
+        domain = work.domain
+        self.segment_ends = work.rank[domain.segments].reshape(-1)
+        self.segment_curve = domain.segment_curve.astype(np.int32)
+        self.curve_kind = domain.curves.kind
+        self.curve_data = domain.curves.data.reshape(-1)
+        self.buckets = np.full((2, N_BUCKETS), -1, np.int32)
+        self.items = np.empty(3 * 4096, np.int32)
+        self.state = np.array([-1, 0, N_BUCKETS - 1, 0], np.int64)
+        self.todo = np.empty(3 * 2048, np.int32)
+        self.size = np.empty(1)
+        self.count = np.array(
+            [work.n_points, work.n_triangles, n_sub, 0, 0, max_points, 0, 0, -1], np.int64
+        )
+
+    @property
+    def graded(self) -> bool:
+        """Whether each vertex has a size of its own."""
+        return len(self.size) > 1
+
+    def run(self) -> bool:
+        """Refine until nothing is bad: True; or until the budget of points is used up: False."""
+        while True:
+            status = self._slice()
+            work = self.work
+            work.report("refine", int(self.count[0]), self.max_points)
+            if status == ROOM:
+                self._make_room()
+            elif status != SLICE:
+                break
+        work.n_points, work.n_triangles = int(self.count[0]), int(self.count[1])
+        self.n_sub = int(self.count[2])
+        if status == STUCK:
+            raise MeshingError(
+                "a curve must not cross another boundary; near "
+                + self._text(int(self.count[8]))
+                + " another segment lies between the curve and its chord"
+            )
+        return status != BUDGET
+
+    def look_again(self) -> None:
+        """Let the next run test every triangle anew, after sizes have changed."""
+        self.count[4] = 0
+
+    def publish(self) -> None:
+        """Hand the subsegments back to the workspace."""
+        n = self.n_sub
+        segment = self.segment[:n].astype(np.int64)
+        work = self.work
+        work.set_subsegments(
+            self.ends[: 2 * n],
+            np.where(segment < 0, -1 - segment, segment),
+            self.interval[: 2 * n].reshape(-1, 2),
+        )
+
+    def _slice(self) -> int:
+        work = self.work
+        rooms = np.array(
+            [
+                len(work.points) // 2,
+                len(work.origin) // 4,
+                len(self.segment),
+                len(self.items) // 3,
+                len(self.todo) // 3,
+                work.work.shape[1],
+            ],
+            np.int64,
+        )
+        return int(
+            kernels.refine(
+                work.points,
+                work.origin,
+                work.twin,
+                work.sub,
+                work.work,
+                self.ends,
+                self.segment,
+                self.interval,
+                self.apex,
+                self.segment_ends,
+                self.segment_curve,
+                self.curve_kind,
+                self.curve_data,
+                self.buckets,
+                self.items,
+                self.state,
+                self.apex_of,
+                self.radius,
+                self.size,
+                np.int64(self.graded),
+                self.number,
+                self.todo,
+                self.count,
+                rooms,
+            )
+        )
+
+    def _make_room(self) -> None:
+        """Double whatever is nearly full; the cavity's buffers if nothing is."""
+        work = self.work
+        cavity = PER_CAVITY * work.work.shape[1]
+        points, triangles, subs, todo = (int(k) for k in self.count[:4])
+        full = False
+        if 2 * (points + 1) > len(work.points):
+            n = 2 * points + 64
+            work.points = grown(work.points, 2 * n)
+            self.apex_of = grown(self.apex_of, n)
+            if self.graded:
+                self.size = grown(self.size, n)
+            full = True
+        if 4 * (triangles + 2) > len(work.origin):
+            n = 4 * (2 * triangles + 128)
+            work.origin, work.twin = grown(work.origin, n), grown(work.twin, n)
+            work.sub = grown(work.sub, n)
+            full = True
+        if subs + 1 > len(self.segment):
+            n = 2 * subs + 64
+            self.ends, self.interval = grown(self.ends, 2 * n), grown(self.interval, 2 * n)
+            self.segment, self.apex = grown(self.segment, n), grown(self.apex, n)
+            full = True
+        if int(self.state[1]) + max(cavity, 8) > len(self.items) // 3:
+            self.items = grown(self.items, 2 * len(self.items) + 3 * cavity)
+            full = True
+        if todo + max(cavity, 8) > len(self.todo) // 3:
+            self.todo = grown(self.todo, 2 * len(self.todo) + 3 * cavity)
+            full = True
+        if not full:
+            work.widen()
+
+    def _text(self, k: int) -> str:
+        segment = int(self.segment[k])
+        a, b = (self.work.place(int(v)) for v in self.ends[2 * k : 2 * k + 2])
+        domain = self.work.domain
+        marker = domain.segment_marker[segment if segment >= 0 else -1 - segment]
+        return f"{' = '.join(domain.boundary_names[marker])} from {a} to {b}"
