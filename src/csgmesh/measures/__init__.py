@@ -1,0 +1,6 @@
+"""Measures of a mesh: `quality` says how good the cells are, `check` whether the mesh is right."""
+
+from csgmesh.measures.certificate import Certificate, Check, Failure, check
+from csgmesh.measures.quality import Quality, quality
+
+__all__ = ["Certificate", "Check", "Failure", "Quality", "check", "quality"]

@@ -1,0 +1,174 @@
+"""How good the cells of a mesh are."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+
+import numpy as np
+
+from csgmesh.errors import InputError
+from csgmesh.measures.shapes import CellMeasures, measure_cells
+from csgmesh.mesh import KINDS, Mesh
+
+_BAR = 40
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Quality:
+    """Measures of each cell of a plane mesh, and their extremes.
+
+    Arrays have an entry a cell, counted through all kinds in the order of ``mesh.cells``. Cells
+    with mid-side points are measured by their corners. A printed Quality is a table with a
+    histogram of the angles.
+
+    Attributes
+    ----------
+    min_angle, max_angle : (n_cells,) float64
+        Smallest and largest inner angle of each cell, degrees.
+    scaled_jacobian : (n_cells,) float64
+        Of quads: the smallest over the corners of ``det / (|a| |b|)``, with a and b the edges
+        there; 1 for a rectangle, below 0 where the quad is not convex. NaN for triangles.
+    sicn : (n_cells,) float64
+        Of quads: the smallest over the corners of ``2 det / (a² + b²)``, the signed inverse
+        condition number; 1 for a square. NaN for triangles.
+    min_edge, max_edge : (n_cells,) float64
+        Shortest and longest edge of each cell.
+    area : (n_cells,) float64
+        Signed area of each cell.
+    n_points, n_cells : int
+    n_by_kind : dict of str to int
+        Number of cells of each kind.
+    """
+
+    min_angle: np.ndarray
+    max_angle: np.ndarray
+    scaled_jacobian: np.ndarray
+    sicn: np.ndarray
+    min_edge: np.ndarray
+    max_edge: np.ndarray
+    area: np.ndarray
+    n_points: int
+    n_cells: int
+    n_by_kind: dict[str, int]
+
+    @property
+    def extremes(self) -> dict[str, tuple[float, float]]:
+        """Smallest and largest value of each measure; those that no cell has are left out."""
+        found = {}
+        for name in _LABELS:
+            values = getattr(self, name)
+            values = values[~np.isnan(values)]
+            if len(values):
+                found[name] = float(values.min()), float(values.max())
+        return found
+
+    @property
+    def total_area(self) -> float:
+        """Sum of the cells' areas."""
+        return float(self.area.sum())
+
+    def __repr__(self) -> str:
+        kinds = ", ".join(f"{n:,} {kind}" for kind, n in self.n_by_kind.items())
+        if not self.n_cells:
+            return "<Quality: no cells>"
+        low, high = self.extremes["min_angle"][0], self.extremes["max_angle"][1]
+        return f"<Quality: {kinds}; angles {low:.2f}° to {high:.2f}°>"
+
+    def __str__(self) -> str:
+        kinds = ", ".join(f"{n:,} {kind}" for kind, n in self.n_by_kind.items())
+        lines = [f"{self.n_points:,} points, {self.n_cells:,} cells ({kinds or 'none'})"]
+        if not self.n_cells:
+            return lines[0]
+        lines += [f"area {self.total_area:.10g}", "", *self._table(), ""]
+        if "triangle" in self.n_by_kind or len(self.n_by_kind) > 1:
+            lines += ["smallest angle of the cells", *_histogram(self.min_angle, 0.0, 90.0, 9)]
+        else:
+            lines += ["scaled Jacobian", *_histogram(self.scaled_jacobian, 0.0, 1.0, 10)]
+        return "\n".join(lines)
+
+    def _table(self) -> list[str]:
+        rows = [f"{'':<18}{'smallest':>12}{'mean':>12}{'largest':>12}"]
+        for name, (low, high) in self.extremes.items():
+            mean = float(np.nanmean(getattr(self, name)))
+            rows.append(f"{_LABELS[name]:<18}{low:>12.5g}{mean:>12.5g}{high:>12.5g}")
+        return rows
+
+
+_LABELS = {
+    "min_angle": "smallest angle °",
+    "max_angle": "largest angle °",
+    "scaled_jacobian": "scaled Jacobian",
+    "sicn": "SICN",
+    "min_edge": "shortest edge",
+    "max_edge": "longest edge",
+    "area": "cell area",
+}
+
+
+def quality(mesh: Mesh) -> Quality:
+    """Measure the cells of a plane mesh.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        Of triangles, quads or both.
+
+    Returns
+    -------
+    Quality
+        Arrays with an entry a cell, extremes, and a printable table.
+
+    Raises
+    ------
+    InputError
+        If the mesh is not plane, or a cell names a point that does not exist.
+
+    Examples
+    --------
+    >>> import csgmesh as cm
+    >>> mesh = cm.Mesh([[0, 0], [1, 0], [1, 1], [0, 1]], {"triangle": [[0, 1, 2], [0, 2, 3]]})
+    >>> print(cm.quality(mesh))
+    4 points, 2 cells (2 triangle)
+    area 1
+    <BLANKLINE>
+                          smallest        mean     largest
+    smallest angle °            45          45          45
+    largest angle °             90          90          90
+    shortest edge                1           1           1
+    longest edge            1.4142      1.4142      1.4142
+    cell area                  0.5         0.5         0.5
+    <BLANKLINE>
+    smallest angle of the cells
+      40 to 50    2  ########################################
+    """
+    if mesh.dim != 2:
+        raise InputError(f"quality measures plane meshes; this one has dim {mesh.dim}")
+    parts = []
+    for kind, rows in mesh.cells.items():
+        if rows.size and not 0 <= rows.min() <= rows.max() < mesh.n_points:
+            raise InputError(
+                f"{kind} cells must name points 0 to {mesh.n_points - 1}; "
+                f"got {rows.min()} to {rows.max()}"
+            )
+        parts.append(measure_cells(mesh.points, rows[:, : KINDS[kind].n_corners]))
+    joined = {
+        f.name: np.concatenate([np.zeros(0), *(getattr(part, f.name) for part in parts)])
+        for f in fields(CellMeasures)
+    }
+    counts = {kind: len(rows) for kind, rows in mesh.cells.items()}
+    return Quality(**joined, n_points=mesh.n_points, n_cells=mesh.n_cells, n_by_kind=counts)
+
+
+def _histogram(values: np.ndarray, lo: float, hi: float, n_bins: int) -> list[str]:
+    """Bars of the bins that hold anything and of all between them."""
+    values = np.clip(values[~np.isnan(values)], lo, hi)
+    count, edges = np.histogram(values, n_bins, (lo, hi))
+    used = np.flatnonzero(count)
+    width = max(len(f"{n:,}") for n in count)
+    edge = "{:.3g}".format
+    ends = max(len(edge(e)) for e in edges)
+    return [
+        f"  {edge(edges[i]):>{ends}} to {edge(edges[i + 1]):<{ends}}  {count[i]:>{width + 1},}  "
+        + "#" * round(_BAR * count[i] / count.max())
+        for i in range(used[0], used[-1] + 1)
+    ]

@@ -1,0 +1,108 @@
+"""Rules about single cells: orientation, smallest angle, Delaunay."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from csgmesh.domain.input_angles import ANGLE_ROUNDING, input_angles
+from csgmesh.measures.results import Check, offenders
+from csgmesh.measures.rules.case import Case
+from csgmesh.mesh.orientation import orientations
+from csgmesh.spatial import Boxes
+from csgmesh.tolerance import EXCUSED_ANGLE, coordinate_ulp
+
+
+def check_orientation(case: Case) -> Check:
+    """Every cell is counterclockwise, by an exact predicate; quads are convex."""
+    rule, bad, before = "orientation", [np.zeros(0, np.int64)], 0
+    for rows in case.corners.values():
+        k = rows.shape[1]
+        wrong = np.zeros(len(rows), bool)
+        # A quad is convex when it turns left at each corner, a triangle's three turns are one.
+        for j in range(1 if k == 3 else k):
+            triples = rows[:, [(j - 1) % k, j, (j + 1) % k]]
+            wrong |= orientations(case.mesh.points, triples) <= 0
+        bad.append(np.flatnonzero(wrong) + before)
+        before += len(rows)
+    numbers = np.concatenate(bad)
+    what = "is|are not counterclockwise"
+    if set(case.corners) - {"triangle", "triangle6"}:
+        what += " and convex"
+    failures = offenders(rule, "cell", numbers, case.cell_places(numbers), what)
+    return Check.of(rule, before, failures)
+
+
+def check_angles(case: Case) -> Check:
+    """No angle is below the bound, but for cells at input angles below 60 degrees."""
+    rule, bound = "smallest angle", case.min_angle
+    smallest = case.quality.min_angle
+    if bound is None:
+        low = f"; the smallest is {smallest.min():.2f}°" if len(smallest) else ""
+        return Check.skipped(rule, "no bound was asked for" + low)
+    # Rounded coordinates turn an edge by this much.
+    shortest = np.maximum(case.quality.min_edge, np.finfo(float).tiny)
+    slack = ANGLE_ROUNDING + np.degrees(coordinate_ulp(case.mesh.points) / shortest)
+    low = np.flatnonzero(smallest < bound - slack)
+    excused = _excused(case, low)
+    bad = low[~excused]
+    detail = f"{smallest[bad[0]]:.4g}°" if len(bad) else ""
+    complaint = f"has|have an angle below {bound:g}°"
+    failures = offenders(rule, "cell", bad, case.cell_places(bad), complaint, detail)
+    rest = np.ones(len(smallest), bool)
+    rest[low] = False
+    reached = f"{smallest[rest].min():.2f}° elsewhere, " if rest.any() else ""
+    note = f"bound {bound:g}°; {reached}{int(excused.sum())} cells excused at input angles"
+    return Check.of(rule, len(smallest), failures, note)
+
+
+def _excused(case: Case, cells: np.ndarray) -> np.ndarray:
+    """Which cells touch the apex of an input angle below 60 degrees or lie in its shell."""
+    out = np.zeros(len(cells), bool)
+    if case.domain is None or not len(cells):
+        return out
+    apexes, angles, radius = input_angles(case.domain)
+    sharp = angles < EXCUSED_ANGLE
+    apexes, radius = apexes[sharp], radius[sharp]
+    if not len(apexes):
+        return out
+    boxes = Boxes(apexes - radius[:, None], apexes + radius[:, None])
+    before = 0
+    slack = case.tolerance
+    for rows in case.corners.values():
+        at = np.flatnonzero((cells >= before) & (cells < before + len(rows)))
+        corners = case.mesh.points[rows[cells[at] - before]]
+        pairs = boxes.overlapping(corners.min(axis=1), corners.max(axis=1))
+        reach = np.hypot(*np.moveaxis(corners[pairs[:, 0]] - apexes[pairs[:, 1], None], 2, 0))
+        near = (reach.max(axis=1) <= radius[pairs[:, 1]] + slack) | (reach.min(axis=1) <= slack)
+        out[at[pairs[near, 0]]] = True
+        before += len(rows)
+    return out
+
+
+def check_delaunay(case: Case) -> Check:
+    """How many edges are not Delaunay, facets apart. Says so, never fails."""
+    rule = "Delaunay"
+    if set(case.corners) - {"triangle", "triangle6"}:
+        return Check.skipped(rule, "only of triangles")
+    edges, points = case.edges, case.mesh.points
+    rows = np.concatenate([np.zeros((0, 3), np.int64), *case.corners.values()])
+    cot = np.zeros(len(edges.points))
+    for k in range(3):
+        apex, a, b = (points[rows[:, j % 3]] for j in (k + 2, k, k + 1))
+        p, q = a - apex, b - apex
+        det = p[:, 0] * q[:, 1] - p[:, 1] * q[:, 0]
+        with np.errstate(divide="ignore", invalid="ignore"):
+            value = (p * q).sum(axis=1) / det
+        # Half-edge k of each cell lies opposite its corner k + 2.
+        cot += np.bincount(edges.half_edge_edge[k::3], value, len(cot))
+    is_facet = np.zeros(len(cot), bool)
+    is_facet[case.facet_edge[case.facet_edge >= 0]] = True
+    inner = ~is_facet & (edges.count == 2)
+    # Opposite angles that add up to 180 degrees have opposite cotangents.
+    n = int((inner & (cot < -_COCIRCULAR)).sum())
+    note = "constrained Delaunay" if n == 0 else f"{n:,} edges are not Delaunay"
+    return Check.of(rule, int(inner.sum()), [], note)
+
+
+#: Sums of cotangents above minus this are cocircular within rounding.
+_COCIRCULAR = 1e-9
