@@ -1,0 +1,291 @@
+"""Domain files: YAML → a shape, a mesher, sizes and expectations."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, fields, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from pydantic import ValidationError
+
+from csgmesh.csg.program import compile_shape
+from csgmesh.domain.curves import LINE
+from csgmesh.domainfile.document import Document, KeyPath, read_document
+from csgmesh.domainfile.expect import Expect, Mismatch, mismatches
+from csgmesh.domainfile.expressions import Expression
+from csgmesh.domainfile.fields import ValidationContext
+from csgmesh.domainfile.limits import Limits
+from csgmesh.domainfile.parameters import described, resolve_parameters
+from csgmesh.domainfile.parts import Problem, problems_of
+from csgmesh.domainfile.schema import MeshPart, file_model
+from csgmesh.domainfile.shapes import Builder, build_shapes, placed
+from csgmesh.domainfile.sizes import constant_or_size
+from csgmesh.domainfile.vocabulary import mesher_classes
+from csgmesh.errors import BudgetError, DomainFileError, ExpressionError, InputError
+
+if TYPE_CHECKING:
+    from csgmesh.mesh import Mesh
+
+_MOST_PROBLEMS = 10
+
+
+@dataclass(frozen=True, eq=False)
+class DomainFile:
+    """What a domain file says.
+
+    Attributes
+    ----------
+    path : Path
+        The file.
+    shape : Shape, Regions or Embed
+        What to mesh.
+    mesher : mesher or None
+        How; None for the default mesher.
+    size : float, mapping, callable or None
+        Wanted edge length, as `csgmesh.generate` takes it.
+    deviation, snap : float or None
+        As `csgmesh.generate` takes them.
+    output : tuple of Path
+        Files to write, beside the domain file.
+    expect : Expect or None
+        What the mesh must be like.
+    parameters : mapping of str to float
+        Values of the parameters.
+    limits : Limits
+        What the file may cost.
+    """
+
+    path: Path
+    shape: Any
+    mesher: Any
+    size: Any
+    deviation: float | None
+    snap: float | None
+    output: tuple[Path, ...]
+    expect: Expect | None
+    parameters: Mapping[str, float]
+    limits: Limits
+    document: Document = field(repr=False)
+
+    def generate(self, progress: Callable[[str, int, int], None] | None = None) -> Mesh:
+        """The mesh.
+
+        Parameters
+        ----------
+        progress : callable, optional
+            Called as ``progress(stage, done, total)``.
+
+        Raises
+        ------
+        DomainFileError
+            A size for a name that the domain does not have, or that is not positive somewhere.
+        EvaluationError
+            The domain is empty or unbounded.
+        BudgetError
+            The mesh would have more than ``limits.cells`` cells.
+        MeshingError
+            The mesher could not do it.
+        """
+        from csgmesh import pipeline
+
+        try:
+            mesh = pipeline.generate(
+                self.shape,
+                self._bounded_mesher(),
+                self.size,
+                deviation=self.deviation,
+                snap=self.snap,
+                progress=progress,
+            )
+        except BudgetError as error:
+            raise BudgetError(f"{error}; a domain file may {self._allowance}", error.mesh) from None
+        except InputError as error:
+            raise self._placed(error) from None
+        if mesh.n_cells > self.limits.cells:
+            raise BudgetError(
+                f"the mesh has {mesh.n_cells} cells; a domain file may {self._allowance}", mesh
+            )
+        return mesh
+
+    def mismatches(self, mesh: Mesh) -> list[tuple[Mismatch, str]]:
+        """What a mesh has against the ``expect`` block, each with its ``file:line:column``."""
+        if self.expect is None:
+            return []
+        found = []
+        for mismatch in mismatches(mesh, self.expect):
+            line, column = self.document.place(("expect", *mismatch.path))
+            found.append((mismatch, f"{self.document.file}:{line}:{column}"))
+        return found
+
+    @property
+    def _allowance(self) -> str:
+        return f"ask for {self.limits.cells} cells (limit cells)"
+
+    def _bounded_mesher(self) -> Any:
+        """The mesher with a budget of points that keeps the cells within their limit."""
+        mesher = self.mesher
+        if mesher is None:
+            mesher = mesher_classes()["delaunay_refinement"]()
+        if "max_points" not in {option.name for option in fields(mesher)}:
+            return mesher
+        # A triangulation has at most two triangles a point.
+        most = max(3, self.limits.cells // 2)
+        return replace(mesher, max_points=min(mesher.max_points, most))
+
+    def _placed(self, error: InputError) -> DomainFileError:
+        """An error of the pipeline at the size it is about, or else at ``mesh``."""
+        message = str(error)
+        sizes = self.size if isinstance(self.size, Mapping) else {}
+        for name in sizes:
+            if repr(name) in message:
+                return self.document.error(message, ("mesh", "size", name), key=True)
+        return self.document.error(message, ("mesh", "size"), key=True)
+
+
+def load(
+    path: str | os.PathLike[str],
+    *,
+    parameters: Mapping[str, float | str] | None = None,
+    limits: Limits | None = None,
+) -> DomainFile:
+    """Read a domain file.
+
+    Parameters
+    ----------
+    path : path-like
+        A YAML file; see the guide to domain files.
+    parameters : mapping of str to float or str, optional
+        Values that replace those of the file's parameters.
+    limits : Limits, optional
+        What the file may cost: its size, nesting, number of values, leaves and cells.
+
+    Returns
+    -------
+    DomainFile
+        With `shape`, `mesher`, `size`, `expect`, `output` and `generate()`.
+
+    Raises
+    ------
+    DomainFileError
+        Anything wrong with the file, as ``file:line:column: message``.
+    InputError
+        A parameter that the file does not have.
+
+    Examples
+    --------
+    >>> from pathlib import Path
+    >>> from tempfile import TemporaryDirectory
+    >>> text = "{csgmesh: 1, parameters: {r: 1}, domain: {disk: {center: [0, 0], radius: $r}}}"
+    >>> with TemporaryDirectory() as folder:
+    ...     path = Path(folder, "disk.yaml")
+    ...     _ = path.write_text(text)
+    ...     load(path, parameters={"r": 2}).shape
+    Disk((0, 0), 2)
+    """
+    path = Path(path)
+    bounds = limits if limits is not None else Limits()
+    document = read_document(path, bounds)
+    if not isinstance(document.data, dict):
+        raise document.error(
+            "a domain file is a mapping with the keys csgmesh, shapes, domain, …, "
+            f"not {described(document.data)}"
+        )
+    values = resolve_parameters(document, parameters or {}, bounds)
+    context = ValidationContext(values, bounds)
+    try:
+        part = file_model().model_validate(document.data, context=context)
+    except ValidationError as error:
+        raise _joined(document, list(problems_of(error))) from None
+    builder = build_shapes(document, part.shapes, bounds)
+    shape = _domain(part, builder)
+    mesh = part.mesh
+    _check_chords(document, shape, mesh.deviation, bounds)
+    return DomainFile(
+        path=path,
+        shape=shape,
+        mesher=_mesher(document, mesh),
+        size=_size(document, mesh.size, shape.dim, values),
+        deviation=mesh.deviation,
+        snap=mesh.snap,
+        output=tuple(_output(document, path, i, name) for i, name in enumerate(part.output)),
+        expect=part.expect,
+        parameters=values,
+        limits=bounds,
+        document=document,
+    )
+
+
+def _joined(document: Document, problems: list[Problem]) -> DomainFileError:
+    """One error for all that is wrong: the first place in the file leads."""
+    errors = [document.error(p.message, p.path, key=p.is_key, offset=p.offset) for p in problems]
+    errors.sort(key=lambda error: (error.line, error.column))
+    first, *others = errors[:_MOST_PROBLEMS]
+    if not others:
+        return first
+    message = str(first).split(": ", 1)[1]
+    listed = "\n".join([message, *map(str, others)])
+    if len(errors) > _MOST_PROBLEMS:
+        listed += f"\n… and {len(errors) - _MOST_PROBLEMS} more"
+    return DomainFileError(listed, file=document.file, line=first.line, column=first.column)
+
+
+def _domain(part: Any, builder: Builder) -> Any:
+    if part.regions is None:
+        return builder.shape(part.domain, ("domain",))
+    shapes = {n: builder.shape(s, ("regions", n)) for n, s in part.regions.items()}
+    return builder.regions(shapes, ("regions",))
+
+
+def _mesher(document: Document, mesh: MeshPart) -> Any:
+    key = mesh.mesher
+    if key is None:
+        return None
+    options = getattr(mesh, key).given()
+    return placed(document, ("mesh", key), lambda: mesher_classes()[key](**options))
+
+
+def _size(document: Document, size: Any, dim: int, parameters: Mapping[str, float]) -> Any:
+    def resolved(value: Any, path: KeyPath) -> Any:
+        if not isinstance(value, Expression):
+            return value
+        try:
+            return constant_or_size(value, dim, parameters)
+        except ExpressionError as error:
+            raise document.error(str(error), path, offset=error.offset) from None
+
+    if isinstance(size, dict):
+        return {name: resolved(v, ("mesh", "size", name)) for name, v in size.items()}
+    return resolved(size, ("mesh", "size"))
+
+
+def _output(document: Document, path: Path, number: int, name: str) -> Path:
+    given = Path(name)
+    # A file from strangers writes beside itself and nowhere else.
+    if given.is_absolute() or ".." in given.parts or not given.name:
+        raise document.error(
+            f"output must be a file in the folder of the domain file, not {name!r}",
+            ("output", number),
+        )
+    return path.parent / given
+
+
+def _check_chords(document: Document, shape: Any, deviation: float | None, limits: Limits) -> None:
+    """Refuse a deviation that needs more chords than the mesh may have cells."""
+    if deviation is None:
+        return
+    chords = 0.0
+    for leaf in compile_shape(shape).leaves:
+        lo, hi = leaf.box
+        if np.isfinite([lo, hi]).all() and (leaf.primitive.curves()[0].kind != LINE).any():
+            radius = 0.5 * float(np.hypot(*(hi - lo)))
+            # A chord over the angle a of a circle deviates by r (1 - cos(a/2)), about r a²/8.
+            chords += np.pi * np.sqrt(0.5 * radius / deviation)
+    if chords > limits.cells:
+        raise document.error(
+            f"deviation {deviation:g} needs about {chords:.1g} chords; a domain file may ask "
+            f"for {limits.cells} cells (limit cells)",
+            ("mesh", "deviation"),
+        )

@@ -1,0 +1,245 @@
+"""The schema of domain files, put together from the vocabulary; and its JSON Schema."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from functools import cache
+from typing import Annotated, Any, ClassVar
+
+from pydantic import Field, GetCoreSchemaHandler, GetJsonSchemaHandler, create_model
+from pydantic_core import core_schema
+
+from csgmesh.domainfile.expect import Expect
+from csgmesh.domainfile.fields import Parameters, Positive, Size, Text, Version, complaint
+from csgmesh.domainfile.parts import Part
+from csgmesh.domainfile.vocabulary import (
+    BOOLEANS,
+    Arguments,
+    embedded_kinds,
+    meshers,
+    primitives,
+    transformations,
+)
+
+#: The dialect that `json_schema` is written in.
+DIALECT = "https://json-schema.org/draft/2020-12/schema"
+
+
+class _Or:
+    """Marks a field that takes a mapping, or a value of a simple type as it is."""
+
+    def __init__(self, simple: type, json_schema: dict[str, Any]) -> None:
+        self.simple = simple
+        self.json_schema = json_schema
+
+    def __get_pydantic_core_schema__(
+        self, source: Any, handler: GetCoreSchemaHandler
+    ) -> core_schema.CoreSchema:
+        def check(value: Any, inner: core_schema.ValidatorFunctionWrapHandler) -> Any:
+            return value if isinstance(value, self.simple) else inner(value)
+
+        return core_schema.no_info_wrap_validator_function(check, handler(source))
+
+    def __get_pydantic_json_schema__(
+        self, schema: core_schema.CoreSchema, handler: GetJsonSchemaHandler
+    ) -> dict[str, Any]:
+        return {"anyOf": [self.json_schema, handler(schema)]}
+
+
+_OR_NAME = _Or(str, {"type": "string", "description": "The name of a shape"})
+_OR_FLAG = _Or(bool, {"type": "boolean"})
+
+
+class ShapePart(Part):
+    """A shape: one key that says what it is, and transformations in the order they are applied."""
+
+    #: Keys of which exactly one says what the shape is; `complement` does where it holds a shape.
+    sources: ClassVar[tuple[str, ...]] = ()
+
+    @property
+    def source(self) -> str:
+        """The key that says what the shape is."""
+        return self._sources_written()[0]
+
+    @property
+    def operations(self) -> tuple[str, ...]:
+        """Keys of the transformations in the order written."""
+        source = self.source
+        return tuple(key for key in self.keys_written if key != source)
+
+    def _sources_written(self) -> list[str]:
+        return [
+            key
+            for key in self.keys_written
+            if key in self.sources
+            or (key == "complement" and not isinstance(getattr(self, key), bool))
+        ]
+
+    def check(self) -> None:
+        """Exactly one key says what the shape is."""
+        found = self._sources_written()
+        if not found:
+            known = ", ".join((*self.sources, "complement"))
+            raise complaint(f"a shape needs a key that says what it is: one of {known}")
+        if len(found) > 1:
+            raise complaint(
+                f"a shape is one of {' and '.join(found)}, not both; a union is written "
+                f"union: [{{{found[0]}: …}}, {{{found[1]}: …}}]",
+                path=(found[1],),
+                key=True,
+            )
+
+    def operands(self) -> Iterator[tuple[tuple[str | int, ...], ShapePart | str]]:
+        """The shapes this one is made of, each with the path to it."""
+        source = self.source
+        value = getattr(self, source)
+        if source in BOOLEANS:
+            for i, operand in enumerate(value):
+                yield (source, i), operand
+        elif source in ("shape", "complement"):
+            yield (source,), value
+        elif source == "regions":
+            for name, operand in value.items():
+                yield (source, name), operand
+        elif source == "embed":
+            yield (source, "shape"), value.shape
+
+
+class _DomainPart(ShapePart):
+    """A shape, several materials, or a shape with embedded paths and points."""
+
+    def check(self) -> None:
+        """As of shapes; and materials are not transformed."""
+        super().check()
+        if self.source in ("regions", "embed") and self.operations:
+            raise complaint(
+                f"{self.source} takes no transformations; transform its shapes",
+                path=(self.operations[0],),
+                key=True,
+            )
+
+
+class MeshPart(Part):
+    """How to mesh: at most one mesher, the size, and how exact the boundary is."""
+
+    size: Size | None = Field(None, description="Wanted edge length; by name, or in x and y")
+    deviation: Positive | None = Field(
+        None, description="Largest distance between a facet and its exact curve"
+    )
+    snap: Positive | None = Field(None, description="Distance below which points merge")
+
+    @property
+    def mesher(self) -> str | None:
+        """The key of the mesher, if there is one."""
+        return next((key for key in self.keys_written if key in meshers()), None)
+
+    def check(self) -> None:
+        """At most one mesher."""
+        found = [key for key in self.keys_written if key in meshers()]
+        if len(found) > 1:
+            raise complaint(
+                f"a mesh has one mesher, not {' and '.join(found)}", path=(found[1],), key=True
+            )
+
+
+class _FilePart(Part):
+    """A domain file of csgmesh: shapes, the domain made of them, how to mesh it, what to expect."""
+
+    def check(self) -> None:
+        """One domain."""
+        if "domain" not in self.keys_written and "regions" not in self.keys_written:
+            raise complaint("key 'domain' is missing: the shape to mesh")
+        if "domain" in self.keys_written and "regions" in self.keys_written:
+            raise complaint("a file has a domain or regions, not both", path=("regions",), key=True)
+
+
+def _optional(kind: Any, description: str = "") -> tuple[Any, Any]:
+    return (kind, Field(default=None, description=description or None))
+
+
+def _list_of(kind: Any) -> Any:
+    return list[kind]
+
+
+def _model(name: str, base: type[Part], fields: dict[str, Any]) -> Any:
+    model: Any = create_model(name, __base__=base, **fields)
+    return model
+
+
+@cache
+def file_model() -> Any:
+    """The model of a whole domain file, a subclass of `Part`."""
+    reference: Any = Annotated["Shape", _OR_NAME]  # noqa: F821
+    whole: Any = Annotated["Domain", _OR_NAME]  # noqa: F821
+    kinds = {key: _optional(model) for key, model in primitives().items()}
+    kinds |= {key: _optional(_list_of(reference)) for key in BOOLEANS}
+    kinds["shape"] = _optional(reference, "A shape by name, or one to transform further")
+    beside = {key: _optional(model) for key, model in transformations().items()}
+    beside["complement"] = _optional(
+        Annotated[reference, _OR_FLAG], "true beside a shape, or the shape itself"
+    )
+    shape = _model("Shape", ShapePart, {**kinds, **beside})
+    shape.sources = tuple(kinds)
+    item = _model("Embedded", _OneOf, {k: _optional(m) for k, m in embedded_kinds().items()})
+    embed = _model(
+        "EmbedArguments", Arguments, {"shape": (whole, ...), "items": (_list_of(item), ...)}
+    )
+    wholes = {"regions": _optional(dict[str, reference]), "embed": _optional(embed)}
+    domain = _model("Domain", _DomainPart, {**kinds, **wholes, **beside})
+    domain.sources = (*kinds, *wholes)
+    mesh = _model("Mesh", MeshPart, {key: _optional(model) for key, model in meshers().items()})
+    file = _model(
+        "DomainFile",
+        _FilePart,
+        {
+            "csgmesh": (Version, Field(description="Version of the format")),
+            "parameters": _optional(Parameters, "Numbers, and arithmetic on each other"),
+            "shapes": (dict[str, reference], Field(default={}, description="Shapes by name")),
+            "domain": _optional(whole, "What to mesh"),
+            "regions": _optional(
+                dict[str, reference], "Several materials; later ones cover earlier ones"
+            ),
+            "mesh": (mesh, Field(default=mesh(), description="How to mesh")),
+            "output": (list[Text], Field(default=[], description="Files to write, beside this")),
+            "expect": _optional(Expect, "What the mesh must be like"),
+        },
+    )
+    names = {"Shape": shape, "Domain": domain}
+    for model in (shape, embed, domain, file):
+        model.model_rebuild(_types_namespace=names)
+    return file
+
+
+class _OneOf(Part):
+    """Exactly one of the keys."""
+
+    def check(self) -> None:
+        """One key."""
+        if len(self.keys_written) != 1:
+            listed = ", ".join(type(self).model_fields)
+            raise complaint(f"expected one of the keys {listed}; found {len(self.keys_written)}")
+
+
+def json_schema() -> dict[str, Any]:
+    """The JSON Schema of domain files, draft 2020-12, for editors.
+
+    Examples
+    --------
+    >>> json_schema()["required"]
+    ['csgmesh']
+    """
+    schema = file_model().model_json_schema()
+    return {"$schema": DIALECT, "title": "csgmesh domain file", **_without_nulls(schema)}
+
+
+def _without_nulls(schema: Any) -> Any:
+    """The schema less ``default: null``: an optional key is left out, not null."""
+    if isinstance(schema, dict):
+        return {
+            key: _without_nulls(value)
+            for key, value in schema.items()
+            if not (key == "default" and value in (None, [], {}))
+        }
+    if isinstance(schema, list):
+        return [_without_nulls(item) for item in schema]
+    return schema
