@@ -24,6 +24,7 @@ _HOME = {
     "refine": "refinement",
     "extract": "export",
     "limit_gradation": "gradation",
+    "expected_points": "gradation",
     "orientations": "checks",
     "delaunay_violations": "checks",
     "locate": "checks",

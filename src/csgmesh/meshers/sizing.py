@@ -1,0 +1,146 @@
+"""Sizes at the vertices of a triangulation under refinement."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from csgmesh import kernels
+from csgmesh.errors import BudgetError
+from csgmesh.meshers.refiner import CIRCLE_SHARE, SEGMENT_SHARE, Refiner
+from csgmesh.size.resolve import ResolvedSize, evaluate
+
+#: Points per area of an equilateral triangulation of edge length 1.
+POINTS_PER_AREA = 2.0 / np.sqrt(3.0)
+#: A mesh is given up before it is made when its sizes ask for this many times the budget.
+OVER_BUDGET = 1.5
+#: Sizes that turn out smaller than expected by more than this share are refined for once more.
+SURPRISE = 0.8
+LAST_ROUNDS = 8
+MOST_SWEEPS = 200
+
+
+class Sizing:
+    """Keeps a refiner's sizes: exact at each vertex, growing no faster than the gradation.
+
+    The kernel interpolates sizes at new vertices. A mesh is therefore made from coarse to fine,
+    with sizes twice, four times, … as large as wanted at first, and after each round the exact
+    values are put in place: the interpolation never spans more than an edge or two.
+    """
+
+    def __init__(self, refiner: Refiner, size: ResolvedSize | None, gradation: float) -> None:
+        self.refiner = refiner
+        self.size = size
+        self.gradation = gradation
+        self.known = 0
+        domain = refiner.work.domain
+        self.largest = domain.diagonal
+        refiner.size = np.empty(len(refiner.work.points) // 2)
+
+    def refine(self) -> bool:
+        """Refine to the sizes; False when the budget of points ran out."""
+        refiner = self.refiner
+        smallest = self.update()
+        coarse = max(int(np.ceil(np.log2(self.largest / smallest))) - 1, 0)
+        for k in [*range(coarse, 0, -1), *[0] * LAST_ROUNDS]:
+            self.check_budget()
+            refiner.number[2] = (CIRCLE_SHARE * 2.0**k) ** 2
+            refiner.number[3] = (SEGMENT_SHARE * 2.0**k) ** 2
+            refiner.look_again()
+            before = self.known
+            if not refiner.run():
+                return False
+            if k == 0 and refiner.work.n_points == before:
+                break
+            guess = refiner.size[before : refiner.work.n_points].copy()
+            self.update()
+            found = refiner.size[before : refiner.work.n_points]
+            if k == 0 and not (found < SURPRISE * guess).any():
+                break
+        return True
+
+    def check_budget(self) -> None:
+        """Refuse at once what cannot be done within the budget."""
+        work, refiner = self.refiner.work, self.refiner
+        expected = kernels.expected_points(
+            work.points, work.origin, work.twin, work.n_triangles, refiner.size, POINTS_PER_AREA
+        )
+        if expected > OVER_BUDGET * refiner.max_points:
+            at = int(np.argmin(refiner.size[: work.n_points]))
+            raise BudgetError(
+                f"the size asks for about {expected:.2g} points, max_points is "
+                f"{refiner.max_points}; the smallest size is {refiner.size[at]:.3g} "
+                f"at {work.place(at)}"
+            )
+
+    def update(self) -> float:
+        """Exact sizes at new vertices, then the gradation; returns the smallest size."""
+        work, refiner = self.refiner.work, self.refiner
+        n = work.n_points
+        new = slice(self.known, n)
+        points = work.points[2 * self.known : 2 * n].reshape(-1, 2)
+        value = np.full(len(points), self.largest)
+        size = self.size
+        if size is not None:
+            if size.default is not None:
+                value = np.minimum(evaluate(size.default, points), self.largest)
+            if size.region:
+                self._regions(value)
+        refiner.size[new] = value
+        self.known = n
+        self._boundaries()
+        self._limit()
+        return float(refiner.size[:n].min())
+
+    def _limit(self) -> None:
+        work = self.refiner.work
+        for _ in range(MOST_SWEEPS):
+            if not kernels.limit_gradation(
+                work.points,
+                work.origin,
+                work.twin,
+                work.n_triangles,
+                self.refiner.size,
+                self.gradation,
+            ):
+                break
+
+    def _regions(self, value: np.ndarray) -> None:
+        """Put the sizes of regions at their new vertices; the smaller one on interfaces."""
+        work = self.refiner.work
+        assert self.size is not None
+        corners = work.origin[: 4 * work.n_triangles].reshape(-1, 4)[:, :3]
+        region = work.twin[: 4 * work.n_triangles].reshape(-1, 4)[:, 3]
+        default = value.copy()
+        value[:] = np.inf
+        inside = region >= 0
+        plain = inside.copy()
+        for regions, source in self.size.region:
+            member = np.isin(region, regions)
+            plain &= ~member
+            at = self._new_vertices(corners[member])
+            where = work.points.reshape(-1, 2)[at + self.known]
+            value[at] = np.minimum(value[at], np.minimum(evaluate(source, where), self.largest))
+        at = self._new_vertices(corners[plain])
+        value[at] = np.minimum(value[at], default[at])
+        value[np.isinf(value)] = self.largest
+
+    def _new_vertices(self, corners: np.ndarray) -> np.ndarray:
+        v = np.unique(corners)
+        return v[v >= self.known].astype(np.int64) - self.known
+
+    def _boundaries(self) -> None:
+        """Sizes on named boundaries, and on all boundaries what their shape asks for."""
+        refiner = self.refiner
+        work = refiner.work
+        n = refiner.n_sub
+        ends = refiner.ends[: 2 * n].reshape(-1, 2)
+        segment = refiner.segment[:n].astype(np.int64)
+        segment = np.where(segment < 0, -1 - segment, segment)
+        xy = work.points.reshape(-1, 2)
+        if self.size is not None:
+            marker = work.domain.segment_marker[segment]
+            for markers, source in self.size.boundary:
+                at = np.unique(ends[np.isin(marker, markers)]).astype(np.int64)
+                probes = np.flatnonzero(np.isin(work.domain.point_marker, markers))
+                at = np.union1d(at, work.rank[probes])
+                refiner.size[at] = np.minimum(refiner.size[at], evaluate(source, xy[at]))

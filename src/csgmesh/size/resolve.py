@@ -1,0 +1,139 @@
+"""What a `size=` argument means on a domain."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from csgmesh.domain.names import find_names
+from csgmesh.domain.pslg import Pslg
+from csgmesh.errors import InputError, SizeError
+from csgmesh.size.field import SizeField, UniformSize, positive
+
+Source = Callable[[np.ndarray], np.ndarray]
+
+
+@dataclass(frozen=True, eq=False)
+class ResolvedSize:
+    """Sizes ready to be evaluated at vertices.
+
+    Attributes
+    ----------
+    default : callable or None
+        Where nothing else is said; None: no bound.
+    boundary : tuple of (markers, callable)
+        On the facets with these markers, and growing away from them.
+    region : tuple of (region numbers, callable)
+        In these regions, instead of the default.
+    """
+
+    default: Source | None
+    boundary: tuple[tuple[np.ndarray, Source], ...] = ()
+    region: tuple[tuple[np.ndarray, Source], ...] = ()
+
+    @property
+    def uniform(self) -> float | None:
+        """The one edge length of a uniform size, None of any other."""
+        if isinstance(self.default, UniformSize) and not self.boundary and not self.region:
+            return self.default.value
+        return None
+
+
+def resolve(size: Any, domain: Pslg) -> ResolvedSize | None:
+    """Look up the names in a `size=` argument and check its values.
+
+    Parameters
+    ----------
+    size : None, float, mapping, callable or SizeField
+        Wanted edge length: a number, names of boundaries and regions with numbers or callables and
+        ``"default"``, a callable of points (n, dim), or a `SizeField`.
+    domain : Pslg
+        Whose names the mapping's keys are.
+
+    Returns
+    -------
+    ResolvedSize or None
+        None without a size.
+
+    Raises
+    ------
+    SizeError
+        If a number is not positive and finite, or a value is neither a number nor callable.
+    NameLookupError
+        If a key matches no boundary and no region.
+
+    Examples
+    --------
+    >>> square = Pslg([[0, 0], [1, 0], [1, 1], [0, 1]], [[0, 1], [1, 2], [2, 3], [3, 0]])
+    >>> resolve({"boundary": 0.1, "default": 0.3}, square).boundary[0][0]
+    array([0])
+    """
+    if size is None:
+        return None
+    if not isinstance(size, Mapping):
+        return ResolvedSize(_source(size, "size"))
+    default: Source | None = None
+    boundary, region = [], []
+    for name, value in size.items():
+        if not isinstance(name, str):
+            raise InputError(f"keys of a size are names of boundaries or regions; got {name!r}")
+        source = _source(value, f"size of {name!r}")
+        if name == "default":
+            default = source
+            continue
+        markers, regions = _meaning(name, domain)
+        if len(markers):
+            boundary.append((markers, source))
+        if len(regions):
+            region.append((regions, source))
+    return ResolvedSize(default, tuple(boundary), tuple(region))
+
+
+def evaluate(source: Source, points: np.ndarray) -> np.ndarray:
+    """Values of a size at points, checked.
+
+    Raises
+    ------
+    SizeError
+        With the first point at which the value is not positive and finite, or the shape is wrong.
+    """
+    if not len(points):
+        return np.empty(0)
+    value = np.asarray(source(points.copy()))
+    if value.dtype.kind not in "fiu":
+        raise SizeError(f"a size must return numbers; got {value.dtype} for {len(points)} points")
+    if value.shape not in ((len(points),), ()):
+        raise SizeError(
+            f"a size must return one number per point, shape ({len(points)},); "
+            f"got shape {value.shape}"
+        )
+    value = np.broadcast_to(value, len(points)).astype(float)
+    wrong = np.flatnonzero(~(np.isfinite(value) & (value > 0)))
+    if len(wrong):
+        where = ", ".join(f"{c:.6g}" for c in points[wrong[0]])
+        raise SizeError(
+            f"a size must be positive and finite; got {value[wrong[0]]:g} at ({where})"
+        )
+    return value
+
+
+def _source(value: Any, what: str) -> Source:
+    if isinstance(value, SizeField):
+        return value
+    if callable(value):
+        return value
+    if isinstance(value, (str, bytes)) or value is None:
+        raise SizeError(f"{what} must be a number or a callable; got {value!r}")
+    return UniformSize(positive(value, what))
+
+
+def _meaning(name: str, domain: Pslg) -> tuple[np.ndarray, np.ndarray]:
+    """Markers and regions that a name, prefix or glob means."""
+    boundaries = [n for names in domain.boundary_names for n in names]
+    wanted = set(find_names(name, [*boundaries, *domain.region_names], what="boundary or region"))
+    markers = [k for k, names in enumerate(domain.boundary_names) if wanted.intersection(names)]
+    regions = [k for k, n in enumerate(domain.region_names) if n in wanted]
+    return np.array(markers, np.int64), np.array(regions, np.int64)
