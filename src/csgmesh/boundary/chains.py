@@ -105,19 +105,15 @@ def _markers(
     first = np.searchsorted(row, np.arange(len(kept) + 1))
     count = first[1:] - first[:-1]
     # Nearly all edges have one name; only the others need a tuple of their own.
-    single = name[np.minimum(first[:-1], max(len(name) - 1, 0))] if len(name) else count
-    table: dict[tuple[str, ...], int] = {}
-    of_name: dict[int, int] = {}
     marker = np.full(len(kept), -1)
-    for k in np.flatnonzero(count > 0).tolist():
-        if count[k] == 1:
-            number = int(single[k])
-            if number not in of_name:
-                of_name[number] = table.setdefault((names[number],), len(table))
-            marker[k] = of_name[number]
-        else:
-            several = dict.fromkeys(names[n] for n in name[first[k] : first[k + 1]].tolist())
-            marker[k] = table.setdefault(tuple(several), len(table))
+    one = np.flatnonzero(count == 1)
+    numbers, single = np.unique(name[first[one]], return_inverse=True)
+    table: dict[tuple[str, ...], int] = {}
+    order = np.array([table.setdefault((names[n],), len(table)) for n in numbers.tolist()], int)
+    marker[one] = order[single] if len(one) else single
+    for k in np.flatnonzero(count > 1).tolist():
+        several = dict.fromkeys(names[n] for n in name[first[k] : first[k + 1]].tolist())
+        marker[k] = table.setdefault(tuple(several), len(table))
     return marker, tuple(table)
 
 

@@ -23,6 +23,9 @@ from csgmesh.tolerance import DEVIATION_SHARE
 #: turn less, and a closed curve needs three chords to be one.
 _TURN = np.pi / 4
 
+#: Largest distance of a chord from its curve, as a share of the gap to the next curve.
+_GAP_SHARE = 0.5
+
 _ROUNDS = 64
 
 
@@ -179,6 +182,9 @@ def _conflicts(
     bad[shared == 2] = True
     at = np.flatnonzero(shared == 0)
     bad[at] = _touch(chords, i[at], j[at])
+    # Between curves that keep apart the gap sets the scale; where they meet it falls to nothing.
+    at = np.flatnonzero((shared == 0) & ~bad & ~_chains_meet(chains, chords, i, j))
+    bad[at] = np.maximum(sag[i[at]], sag[j[at]]) > _GAP_SHARE * _distance(chords, i[at], j[at])
     at = np.flatnonzero(shared == 1)
     bad[at] = _disordered(local, source, chords, i[at], j[at])
     halve = np.zeros(len(chords.chain), bool)
@@ -220,6 +226,27 @@ def _shared(chords: Chords, i: np.ndarray, j: np.ndarray) -> np.ndarray:
     for x in (chords.tail[i], chords.head[i]):
         count += (x == chords.tail[j]) | (x == chords.head[j])
     return count
+
+
+def _chains_meet(chains: Chains, chords: Chords, i: np.ndarray, j: np.ndarray) -> np.ndarray:
+    a, b = chords.chain[i], chords.chain[j]
+    meet = a == b
+    for x in (chains.tail[a], chains.head[a]):
+        meet |= (x == chains.tail[b]) | (x == chains.head[b])
+    return meet
+
+
+def _distance(chords: Chords, i: np.ndarray, j: np.ndarray) -> np.ndarray:
+    """Distance between chords that do not cross: that of an end of one from the other."""
+    out = np.full(len(i), np.inf)
+    for k, other in ((i, j), (j, i)):
+        a, b = chords.points[chords.tail[other]], chords.points[chords.head[other]]
+        along = b - a
+        for end in (chords.tail[k], chords.head[k]):
+            q = chords.points[end]
+            share = np.clip(((q - a) * along).sum(1) / (along * along).sum(1), 0.0, 1.0)
+            out = np.minimum(out, np.hypot(*(q - a - share[:, None] * along).T))
+    return out
 
 
 def _touch(chords: Chords, i: np.ndarray, j: np.ndarray) -> np.ndarray:

@@ -160,9 +160,9 @@ def _inside_of(arrangement: Arrangement, found: PlanarMap) -> np.ndarray:
             arrangement, found, waiting[row], edge, p, lo, hi
         )
         # A box may be met whose edge passes below the window: only what lies in it is settled.
-        settled = height >= bottom[component]
-        inside[component[settled]] = half_edge[settled]
         over = bottom <= floor
+        settled = (height >= bottom[component]) | over[component]
+        inside[component[settled]] = half_edge[settled]
         over[component[settled]] = True
         waiting = waiting[~over[waiting]]
         reach *= 2
