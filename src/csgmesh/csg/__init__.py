@@ -2,15 +2,9 @@
 
 from __future__ import annotations
 
+from csgmesh.csg.booleans import difference, intersection, symmetric_difference, union
 from csgmesh.csg.embed import Embed, EmbeddedPath, EmbeddedPoints
-from csgmesh.csg.nodes import (
-    Primitive,
-    Shape,
-    difference,
-    intersection,
-    symmetric_difference,
-    union,
-)
+from csgmesh.csg.primitive import Primitive
 from csgmesh.csg.primitives import (
     Box,
     Disk,
@@ -22,6 +16,7 @@ from csgmesh.csg.primitives import (
     Triangle,
 )
 from csgmesh.csg.regions import Regions
+from csgmesh.csg.shape import Shape
 
 __all__ = [
     "Box",

@@ -92,9 +92,8 @@ def point_array(value: Any, what: str, where: str, dim: int = 2, least: int = 1)
             f"{where}: {what} must be an (n, {dim}) array; got one of shape {points.shape}"
         )
     if len(points) < least:
-        raise ShapeError(
-            f"{where}: {what} must hold at least {least} point{'s' * (least > 1)}; got {len(points)}"
-        )
+        wanted = f"at least {least} point{'s' * (least > 1)}"
+        raise ShapeError(f"{where}: {what} must hold {wanted}; got {len(points)}")
     good = (np.abs(points) <= LARGEST).all(axis=1)  # NaN compares false
     if not good.all():
         first = int(np.argmin(good))
@@ -132,7 +131,7 @@ def name(value: Any, where: str) -> str:
     if bad or not value.isprintable():
         found = " ".join(bad) if bad else "a control character"
         raise ShapeError(
-            f"{where}: a name must not contain * ? [ ] \" or control characters, which lookups "
+            f'{where}: a name must not contain * ? [ ] " or control characters, which lookups '
             f"and mesh files need; got {value!r} with {found}"
         )
     if any(not part or part != part.strip() for part in value.split(".")):

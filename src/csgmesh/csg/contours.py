@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -124,8 +124,8 @@ def _circular(start: np.ndarray, through: np.ndarray, end: np.ndarray) -> Curves
     closed = bb == 0.0
     straight = (np.abs(cross) <= 1e-15 * np.maximum(aa, bb)) & ~closed
     twice = np.where(straight | closed, 1.0, 2.0 * cross)
-    middle = np.stack([bb * a[:, 1] - aa * b[:, 1], aa * b[:, 0] - bb * a[:, 0]], axis=1)
-    middle = np.where(closed[:, None], 0.5 * a, -middle / twice[:, None])
+    middle = np.stack([aa * b[:, 1] - bb * a[:, 1], bb * a[:, 0] - aa * b[:, 0]], axis=1)
+    middle = np.where(closed[:, None], 0.5 * a, middle / twice[:, None])
     u = -middle
     # Counterclockwise (through lies right of the chord) or clockwise.
     turn = np.where(closed | (cross > 0.0), 1.0, -1.0)
@@ -144,7 +144,7 @@ def _circular(start: np.ndarray, through: np.ndarray, end: np.ndarray) -> Curves
     )
 
 
-_TABLES = {
+_TABLES: dict[str, Callable[..., Curves]] = {
     "line": Curves.lines,
     "arc": _circular,
     "quadratic": Curves.quadratics,

@@ -188,8 +188,7 @@ class Embed:
         """The domain that `to_dict` wrote."""
         inner = data["embed"]
         shape = Regions.from_dict(inner) if "regions" in inner else Shape.from_dict(inner)
+        made: dict[str, type[EmbeddedPath] | type[EmbeddedPoints]]
         made = {"path": EmbeddedPath, "points": EmbeddedPoints}
-        return Embed(
-            shape,
-            [made[k](v["points"], name=v["name"]) for item in data["items"] for k, v in item.items()],
-        )
+        items = [(kind, value) for item in data["items"] for kind, value in item.items()]
+        return Embed(shape, [made[kind](v["points"], name=v["name"]) for kind, v in items])

@@ -17,6 +17,9 @@ if TYPE_CHECKING:
 #: between its two lines is then lost in the rounding of their normals.
 _FAR = 1e12
 
+#: A unit normal's component below this counts as zero: the line is parallel to the axis.
+_PARALLEL = 1e-9
+
 
 @dataclass(eq=False)
 class _Hull:
@@ -73,6 +76,11 @@ def _leaf_pair(leaf: Leaf, dim: int) -> _Pair:
     low, high = leaf.box
     if not isinstance(leaf.primitive, HalfSpace):
         return _Hull(low, high, []), _Hull(*_everything(dim), [])
+    if np.isfinite(low).any() or np.isfinite(high).any():  # parallel to an axis
+        free = ~np.isfinite(low) & ~np.isfinite(high)
+        other_low = np.where(free | np.isfinite(low), -np.inf, high)
+        other_high = np.where(free | np.isfinite(high), np.inf, low)
+        return _Hull(low, high, []), _Hull(other_low, other_high, [])
     point, normal = leaf.half_space()
     return (
         _Hull(*_everything(dim), [(point, normal)]),
@@ -110,36 +118,47 @@ def cut_box(
     >>> cut_box(low, high, [(np.array([1.0, 0.0]), np.array([1.0, 1.0]))])
     (array([0., 0.]), array([1., 1.]))
     """
-    finite = np.concatenate([low[np.isfinite(low)], high[np.isfinite(high)]])
     anchors = np.array([point for point, _ in cuts])
     origin = anchors.mean(axis=0)
-    spread = float(np.abs(anchors - origin).max())
-    sides = np.concatenate([(low - origin), (high - origin)])
-    size = max([spread, *np.abs(sides[np.isfinite(sides)]).tolist()]) or 1.0
-    del finite
-    # Lines n·x = c in coordinates about the origin, in units of the size; the box's four come first.
+    sides = np.concatenate([origin - low, high - origin])
+    bounded = np.isfinite(sides)
+    reach = np.concatenate([(anchors - origin).ravel(), sides[bounded]])
+    size = float(np.abs(reach).max()) or 1.0
+    # Lines n·x = c about the origin, in units of the size; the box's four sides come first.
     normals = [np.array(n) for n in ((-1.0, 0.0), (0.0, -1.0), (1.0, 0.0), (0.0, 1.0))]
-    edge = np.concatenate([origin - low, high - origin]) / size
-    reach = np.where(np.isfinite(edge), edge, _FAR)
-    offsets = reach.tolist()
+    offsets = np.where(bounded, sides / size, _FAR).tolist()
     for point, normal in cuts:
         unit = normal / np.abs(normal).max()
         unit /= np.hypot(*unit)
         normals.append(unit)
         offsets.append(float(unit @ ((point - origin) / size)))
-    corners, lines = _clipped(np.array(normals), np.array(offsets))
+    table = np.array(normals)
+    corners, lines = _clipped(table, np.array(offsets))
     if len(corners) == 0:
         return np.full(2, np.inf), np.full(2, -np.inf)
-    far = ~np.isfinite(edge)
-    touched = np.zeros(4, bool)
-    touched[lines[lines < 4]] = True
-    reached_low = origin + size * corners.min(axis=0)
-    reached_high = origin + size * corners.max(axis=0)
-    open_ended = far & touched
-    at_low, at_high = touched[:2] & ~far[:2], touched[2:] & ~far[2:]
-    reached_low = np.where(open_ended[:2], -np.inf, np.where(at_low, low, reached_low))
-    reached_high = np.where(open_ended[2:], np.inf, np.where(at_high, high, reached_high))
-    return reached_low, reached_high
+    corners = _sent_to_infinity(corners, lines, table, ~bounded)
+    touched = np.isin([0, 1, 2, 3], lines) & bounded
+    reached = origin + size * corners
+    return (
+        np.where(touched[:2], low, reached.min(axis=0)),
+        np.where(touched[2:], high, reached.max(axis=0)),
+    )
+
+
+def _sent_to_infinity(
+    corners: np.ndarray, lines: np.ndarray, normals: np.ndarray, open_sides: np.ndarray
+) -> np.ndarray:
+    """Corners on a side that stands for infinity, moved there along the other line they lie on."""
+    at_infinity = np.zeros(len(normals), bool)
+    at_infinity[:4] = open_sides
+    before = np.roll(lines, 1)
+    result = corners.copy()
+    for k in np.flatnonzero(at_infinity[lines] | at_infinity[before]):
+        ends = [line for line in (before[k], lines[k]) if not at_infinity[line]]
+        # Along n·x = c, x changes where n_y is not zero and y where n_x is not.
+        moves = np.abs(normals[ends[0], ::-1]) > _PARALLEL if ends else np.ones(2, bool)
+        result[k] = np.where(moves, np.copysign(np.inf, corners[k]), corners[k])
+    return result
 
 
 def _clipped(normals: np.ndarray, offsets: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -10,7 +10,7 @@ Vector = tuple[float, ...]
 
 
 def cos_sin(degrees: float) -> tuple[float, float]:
-    """Cosine and sine of an angle in degrees, exact at multiples of 30 where the value is 0, ½ or 1.
+    """Cosine and sine of an angle in degrees, exact where the value is 0, ±½ or ±1.
 
     Examples
     --------
@@ -19,7 +19,7 @@ def cos_sin(degrees: float) -> tuple[float, float]:
     """
     turned = math.fmod(degrees, 360.0)
     quarter = round(turned / 90.0)
-    rest = turned - 90.0 * quarter  # exact: both are multiples of the same power of two
+    rest = turned - 90.0 * quarter  # exact: it needs no digit finer than the angle has
     cosine = math.cos(math.radians(rest))
     sine = math.copysign(0.5, rest) if abs(rest) == 30.0 else math.sin(math.radians(rest))
     for _ in range(quarter % 4):

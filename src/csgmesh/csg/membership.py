@@ -88,10 +88,9 @@ def _pruned(function: _Function, state: np.ndarray) -> _Function | bool:
         values = state[literals >> 1]
         open_literals = literals[values == 2]
         known = values[values != 2] ^ (literals[values != 2] & 1)
-        constants = [v ^ flag for (v, _, _), flag in zip(taken, flags, strict=True) if v is not None]
-        kept = tuple(
-            [n ^ flag for (v, _, n), flag in zip(taken, flags, strict=True) if v is None]
-        )
+        flagged = list(zip(taken, flags, strict=True))
+        constants = [value ^ flag for (value, _, _), flag in flagged if value is not None]
+        kept = tuple([negated ^ flag for (value, _, negated), flag in flagged if value is None])
         if operation == XOR:
             odd = bool((int(known.sum()) + sum(constants)) % 2)
         else:

@@ -6,13 +6,13 @@ from __future__ import annotations
 class Namer:
     """Hands out names in tree order.
 
-    Given names never change. An unnamed leaf is called by its kind, and numbered if a leaf before it
-    answers to that already, so that appending a leaf changes no earlier name.
+    Given names never change. An unnamed leaf is called by its kind, and numbered if a leaf before
+    it answers to that already, so that appending a leaf changes no earlier name.
 
     Examples
     --------
     >>> namer = Namer()
-    >>> [namer.named("", None, "disk"), namer.named("", "hole", "disk"), namer.named("", None, "disk")]
+    >>> [namer.named("", given, "disk") for given in (None, "hole", None)]
     ['disk', 'hole', 'disk.2']
     >>> namer.named("bracket", None, "disk")
     'bracket.disk'

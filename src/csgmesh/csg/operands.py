@@ -1,4 +1,4 @@
-"""Operands of a boolean: an immutable run of shapes in a buffer shared with the booleans it grew from.
+"""Operands of a boolean: immutable runs of shapes in a buffer shared with the run they grew from.
 
 ``s = s | x`` ten thousand times makes ten thousand booleans. Were each to own its operands, the
 loop would copy fifty million references; sharing one growing buffer makes each step constant on
@@ -19,7 +19,7 @@ _GROWING = Lock()
 
 
 class _Buffer(Generic[T]):
-    """A list that grows at both ends: item i ≥ 0 is ``back[i]``, item i < 0 is ``front[-1 - i]``."""
+    """A list that grows at both ends: item i is ``back[i]``, or ``front[-1 - i]`` for i < 0."""
 
     __slots__ = ("back", "front")
 

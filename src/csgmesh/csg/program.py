@@ -139,7 +139,8 @@ class Program:
     def bounds(self) -> tuple[np.ndarray, np.ndarray]:
         """Lowest and highest corner of a box around all regions, ±inf where unbounded."""
         boxes = [code_bounds(self.leaves, code, self.dim) for _, code in self.regions]
-        return np.min([low for low, _ in boxes], axis=0), np.max([high for _, high in boxes], axis=0)
+        lows, highs = zip(*boxes, strict=True)
+        return np.min(lows, axis=0), np.max(highs, axis=0)
 
 
 def compile_shape(shape: Shape | Regions | Embed) -> Program:
@@ -158,7 +159,8 @@ def compile_shape(shape: Shape | Regions | Embed) -> Program:
     entries = domain.entries if isinstance(domain, Regions) else (("domain", domain),)
     compiler = _Compiler(domain.dim)
     regions = tuple((name, compiler.compiled(part)) for name, part in entries)
-    paths, probes = [], []
+    paths: list[tuple[str, np.ndarray]] = []
+    probes: list[tuple[str, np.ndarray]] = []
     for item in shape.items if isinstance(shape, Embed) else ():
         name = compiler.namer.named("", item.name, item.kind)
         (paths if isinstance(item, EmbeddedPath) else probes).append((name, item.points))
@@ -195,7 +197,8 @@ class _Compiler:
                 stack.append((node.shape, self._placed(placement, node), prefix))
             else:
                 assert isinstance(node, Named)
-                stack.append((node.shape, placement, f"{prefix}.{node.name}" if prefix else node.name))
+                below = f"{prefix}.{node.name}" if prefix else node.name
+                stack.append((node.shape, placement, below))
         return tuple(code)
 
     def _placed(self, placement: tuple, node: Affine) -> tuple:

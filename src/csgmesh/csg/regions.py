@@ -100,7 +100,7 @@ class Regions:
         return Regions, (dict(self.entries),)
 
     def to_dict(self) -> dict[str, Any]:
-        """The regions as lists, numbers and strings, ready for JSON; `from_dict` reads them back."""
+        """The regions as lists, numbers and strings, ready for JSON."""
         return {"regions": [[name, shape.to_dict()] for name, shape in self.entries]}
 
     @staticmethod

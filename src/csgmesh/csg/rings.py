@@ -28,7 +28,8 @@ def check_ring(points: np.ndarray, what: str, where: str) -> None:
     shifted = points - points[0]
     farthest = shifted[int(np.argmax(np.abs(shifted).max(axis=1)))]
     size = float(np.abs(farthest).max())
-    off = np.abs((farthest[0] / (size or 1.0)) * shifted[:, 1] - (farthest[1] / (size or 1.0)) * shifted[:, 0])
+    along = farthest / (size or 1.0)
+    off = np.abs(along[0] * shifted[:, 1] - along[1] * shifted[:, 0])
     if float(off.max()) <= _ROUNDING * size:
         first, last = tuple(points[0].tolist()), tuple((points[0] + farthest).tolist())
         raise ShapeError(
@@ -40,3 +41,15 @@ def check_ring(points: np.ndarray, what: str, where: str) -> None:
 def closed_lines(points: np.ndarray) -> Curves:
     """The sides of a ring."""
     return Curves.lines(points, np.roll(points, -1, axis=0))
+
+
+def point_within(points: np.ndarray) -> np.ndarray:
+    """A point inside a ring that does not cross itself, well away from its corners' heights."""
+    heights = np.unique(points[:, 1])
+    gap = int(np.argmax(np.diff(heights)))
+    y = 0.5 * (heights[gap] + heights[gap + 1])
+    following = np.roll(points, -1, axis=0)
+    (at,) = np.nonzero((points[:, 1] <= y) != (following[:, 1] <= y))
+    a, b = points[at], following[at]
+    crossings = np.sort(a[:, 0] + (y - a[:, 1]) / (b[:, 1] - a[:, 1]) * (b[:, 0] - a[:, 0]))
+    return np.array((0.5 * (crossings[0] + crossings[1]), y))

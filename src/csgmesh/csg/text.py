@@ -28,7 +28,7 @@ DEEPEST_EXPRESSION = 100
 #: Leaves, and points of a leaf, beyond which `repr` only says how many there are.
 WIDEST_EXPRESSION = 1000
 
-#: Operands beyond which a boolean is written as a function: Python parses ``a | b | c`` recursively.
+#: Operands beyond which a boolean is written as a function: Python parses ``a | b`` recursively.
 _WIDEST_CHAIN = 8
 
 
@@ -148,7 +148,7 @@ def _leaf(kind: str, arguments: dict[str, Any]) -> Shape:
 
 def _node(kind: str, rest: Sequence[Any], children: list[Shape]) -> Shape:
     if kind in SYMBOLS:
-        return combined(kind, children)  # type: ignore[arg-type]
+        return combined(kind, children)
     (shape,) = children
     if kind == "complement":
         return ~shape
@@ -172,9 +172,7 @@ def to_dict(root: Shape) -> dict[str, Any]:
             nodes.append({"named": {"shape": children[0], "name": content[1]}})
         else:
             matrix, offset = map(_plain, content[1:])
-            nodes.append(
-                {"transform": {"shape": children[0], "matrix": matrix, "offset": offset}}
-            )
+            nodes.append({"transform": {"shape": children[0], "matrix": matrix, "offset": offset}})
     return {"nodes": nodes}
 
 

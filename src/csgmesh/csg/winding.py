@@ -1,12 +1,12 @@
 """Winding numbers of closed curves about many points, by a grid.
 
-A row of cells knows the winding number along its lower edge: the crossings to the left, summed once.
-A point walks from that edge straight up to itself and meets only the pieces in its own cell. Where
-the walk leaves the edge, each piece's side is read off the same stored crossing that was summed, so
-rounding can err only for points within rounding of a curve.
+A row of cells knows the winding number along its lower edge: the crossings to the left, summed
+once. A point walks from that edge straight up to itself and meets only the pieces in its own cell.
+Where the walk leaves the edge, each piece's side is read off the same stored crossing that was
+summed, so rounding can err only for points within rounding of a curve.
 
-With n pieces the grid has some 2n cells, narrow where pieces are tall and flat where they are wide,
-so that combs, coastlines and spirals alike cost O(n) to enter and O(1) on average a point.
+With n pieces the grid has at most 4n cells, narrow where pieces are tall and flat where they are
+wide, so that combs and coastlines alike cost O(n) to enter and a few pieces a point on average.
 """
 
 from __future__ import annotations
@@ -161,11 +161,11 @@ def _ranges(first: np.ndarray, count: np.ndarray) -> np.ndarray:
 
 
 def _resolution(pieces: _Pieces, extent: np.ndarray) -> tuple[int, int]:
-    """Columns and rows such that pieces enter a few cells each and cells number about 2n."""
+    """Columns and rows such that pieces enter a few cells each and cells number at most 4n."""
     n = len(pieces.curve)
     travelled = np.abs(pieces.p1 - pieces.p0).sum(axis=0)
     wanted = np.maximum(n * extent / np.maximum(travelled, np.finfo(float).tiny), 1.0)
-    limit = 2.0 * n + 16.0
+    limit = 4.0 * n + 16.0
     fewer = wanted * min(np.sqrt(limit / wanted.prod()), 1.0)
     narrow = int(np.argmin(fewer))
     if fewer[narrow] < 1.0:
@@ -310,7 +310,7 @@ def _solved(
     t0: np.ndarray,
     t1: np.ndarray,
 ) -> np.ndarray:
-    """Parameters in [t0, t1] where a monotone coordinate has a value: Newton, kept in by halving."""
+    """Parameters in [t0, t1] where a monotone coordinate has a value: Newton, else halving."""
     below, above = t0.copy(), t1.copy()
     backwards = curves.points(curve, t0)[:, axis] > curves.points(curve, t1)[:, axis]
     below[backwards], above[backwards] = t1[backwards], t0[backwards]

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 
 from csgmesh.csg import checks, matrices
-from csgmesh.csg.nodes import Primitive
+from csgmesh.csg.primitive import Primitive
 from csgmesh.domain.curves import Curves
 
 if TYPE_CHECKING:
@@ -18,8 +18,8 @@ if TYPE_CHECKING:
 def quarter_arcs(center: np.ndarray, u: np.ndarray, v: np.ndarray) -> Curves:
     """The whole ellipse ``center + cos(t) u + sin(t) v`` as four arcs cut at multiples of π/2."""
     cuts = np.arange(5) * (np.pi / 2)
-    repeated = [np.tile(vector, (4, 1)) for vector in (center, u, v)]
-    return Curves.arcs(*repeated, cuts[:-1], cuts[1:])
+    c, u, v = (np.tile(vector, (4, 1)) for vector in (center, u, v))
+    return Curves.arcs(c, u, v, cuts[:-1], cuts[1:])
 
 
 @dataclass(frozen=True, eq=False, repr=False, init=False)

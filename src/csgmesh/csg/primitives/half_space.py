@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 
 from csgmesh.csg import checks
-from csgmesh.csg.nodes import Primitive
+from csgmesh.csg.primitive import Primitive
 from csgmesh.domain.curves import Curves
 from csgmesh.errors import ShapeError
 

@@ -9,9 +9,8 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from csgmesh.csg import checks
 from csgmesh.csg.contours import Contour, contour_curves, path_contours, read_contour
-from csgmesh.csg.nodes import Primitive
+from csgmesh.csg.primitive import Primitive
 from csgmesh.csg.winding import WindingGrid
 from csgmesh.domain.curves import Curves
 from csgmesh.errors import ShapeError
@@ -51,7 +50,8 @@ class Outline(Primitive):
     Examples
     --------
     >>> import csgmesh as cm
-    >>> stadium = cm.Outline([[(0, 0), (2, 0), ("arc", (3, 1), (2, 2)), (0, 2), ("arc", (-1, 1), (0, 0))]])
+    >>> right, left = ("arc", (3, 1), (2, 2)), ("arc", (-1, 1), (0, 0))
+    >>> stadium = cm.Outline([[(0, 0), (2, 0), right, (0, 2), left]])
     >>> stadium.contains([(2.9, 1), (2.9, 0)])
     array([ True, False])
     """

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 
 from csgmesh.csg import checks
-from csgmesh.csg.nodes import Primitive
-from csgmesh.csg.rings import check_ring, closed_lines, ring_area, without_repeats
+from csgmesh.csg.primitive import Primitive
+from csgmesh.csg.rings import check_ring, closed_lines, point_within, ring_area, without_repeats
 from csgmesh.csg.winding import WindingGrid
 from csgmesh.domain.curves import Curves
 from csgmesh.errors import ShapeError
@@ -41,13 +41,14 @@ class Polygon(Primitive):
     Raises
     ------
     ShapeError
-        If a ring has fewer than three points, all its points lie on a line, or a hole reaches out
-        of the box around the polygon.
+        If a ring has fewer than three points or all its points lie on a line; on first use, if a
+        hole lies outside the polygon or in another hole.
 
     Examples
     --------
     >>> import csgmesh as cm
-    >>> frame = cm.Polygon([(0, 0), (4, 0), (4, 4), (0, 4)], holes=[[(1, 1), (3, 1), (3, 3), (1, 3)]])
+    >>> hole = [(1, 1), (3, 1), (3, 3), (1, 3)]
+    >>> frame = cm.Polygon([(0, 0), (4, 0), (4, 4), (0, 4)], holes=[hole])
     >>> frame.contains([(0.5, 0.5), (2, 2)])
     array([ True, False])
     """
@@ -68,13 +69,6 @@ class Polygon(Primitive):
         where = self.place(name)
         outer = _ring(points, "points", where)
         inner = tuple(_ring(hole, f"hole {k}", where) for k, hole in enumerate(holes))
-        low, high = outer.min(axis=0), outer.max(axis=0)
-        for k, hole in enumerate(inner):
-            if (hole.min(axis=0) < low).any() or (hole.max(axis=0) > high).any():
-                raise ShapeError(
-                    f"{where}: hole {k} must lie inside the polygon; it reaches from "
-                    f"{tuple(hole.min(axis=0).tolist())} to {tuple(hole.max(axis=0).tolist())}"
-                )
         self._settle(name, points=outer, holes=inner)
 
     @cached_property
@@ -87,12 +81,25 @@ class Polygon(Primitive):
         ]
 
     @cached_property
+    def _table(self) -> Curves:
+        return Curves.concatenate(closed_lines(ring) for ring in self._rings)
+
+    @cached_property
     def _grid(self) -> WindingGrid:
-        return WindingGrid.of(self.curves()[0])
+        grid = WindingGrid.of(self._table)
+        if self.holes:
+            within = np.array([point_within(ring) for ring in self._rings[1:]])
+            for k in np.flatnonzero(grid.winding(within) < 0)[:1].tolist():
+                raise ShapeError(
+                    f"{self.place(self.name)}: hole {k} must lie inside the polygon and outside "
+                    f"its other holes; it does not at {tuple(within[k].tolist())}"
+                )
+        return grid
 
     def curves(self) -> tuple[Curves, np.ndarray]:
-        table = Curves.concatenate(closed_lines(ring) for ring in self._rings)
-        return table, np.zeros(len(table), np.int64)
+        if self.holes:
+            _ = self._grid  # checks the holes
+        return self._table, np.zeros(len(self._table), np.int64)
 
     def inside(self, points: np.ndarray) -> np.ndarray:
         return self._grid.winding(points) != 0
@@ -105,6 +112,6 @@ class Polygon(Primitive):
 def _ring(value: ArrayLike, what: str, where: str) -> np.ndarray:
     points = checks.point_array(value, what, where, least=3)
     if len(without_repeats(points)) < 3:
-        raise ShapeError(f"{where}: {what} must hold at least 3 different points; got {len(points)}")
+        raise ShapeError(f"{where}: {what} must hold 3 or more different points; got {points!r}")
     check_ring(points, what, where)
     return points
