@@ -150,7 +150,7 @@ def _plane(listing: Listing) -> np.ndarray:
 def _of_dim(listing: Listing, dim: int) -> tuple[dict[str, np.ndarray], dict[str, np.ndarray]]:
     rows, tags = {}, {}
     for kind, blocks in listing.blocks.items():
-        if KINDS[kind].dim == dim and sum(len(r) for r, _ in blocks):
+        if KINDS[kind].dim == dim and any(len(r) for r, _ in blocks):
             rows[kind] = np.concatenate([r for r, _ in blocks]).astype(np.int64, copy=False)
             tags[kind] = np.concatenate([t for _, t in blocks]).astype(np.int64, copy=False)
     return rows, tags
@@ -179,9 +179,7 @@ def _first_of_each(rows: np.ndarray) -> np.ndarray:
     return np.sort(order[is_new])
 
 
-def _counterclockwise(
-    points: np.ndarray, cells: Mapping[str, np.ndarray]
-) -> Mapping[str, np.ndarray]:
+def _counterclockwise(points: np.ndarray, cells: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
     """Turn a mesh over if all of it is clockwise; a mixture stays, for the check to find."""
     for kind, rows in cells.items():
         p = points[rows[:, : KINDS[kind].n_corners]]

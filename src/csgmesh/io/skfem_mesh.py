@@ -54,9 +54,7 @@ def to_skfem(mesh: Mesh) -> skfem.Mesh:
     """
     kinds = [kind for kind, rows in mesh.cells.items() if len(rows)]
     if len(kinds) != 1 or kinds[0] not in _CLASSES:
-        raise InputError(
-            f"to_skfem needs cells of one kind of {list(_CLASSES)}; got {kinds}"
-        )
+        raise InputError(f"to_skfem needs cells of one kind of {list(_CLASSES)}; got {kinds}")
     import skfem
 
     kind = kinds[0]

@@ -201,7 +201,7 @@ class _Appended:
         components = f' NumberOfComponents="{array.shape[1]}"' if array.ndim == 2 else ""
         type_name = _TYPE_NAME[array.dtype.str[1:]]
         offset = self.size
-        for part in self._encoded(memoryview(array.reshape(-1).view(np.uint8))):
+        for part in self._encoded(array.reshape(-1).view(np.uint8).data):
             self.chunks.append(part)
             self.size += len(part)
         return (

@@ -1,0 +1,150 @@
+"""The verb `draw`."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass, fields
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from csgmesh.domain.pslg import Pslg
+from csgmesh.errors import FileFormatError, InputError
+from csgmesh.mesh import Mesh
+from csgmesh.options import check_choice, check_options, near
+from csgmesh.viz.scene import Scene, mesh_scene, pslg_scene
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+_FORMATS = {".png": "png", ".svg": "svg", ".pdf": "pdf"}
+#: What makes the same picture the same bytes: no dates, no random ids, no version.
+_METADATA = {
+    "png": {"Software": None},
+    "svg": {"Date": None},
+    "pdf": {"CreationDate": None, "Producer": None, "Creator": None},
+}
+
+
+@dataclass(frozen=True)
+class Options:
+    """Options of `draw`."""
+
+    ax: Any = None
+    figsize: tuple[float, float] | None = None
+    color: str = "region"
+    legend: bool = True
+    title: str | None = None
+    dpi: float = 150.0
+
+
+def draw(x: object, path: str | os.PathLike[str] | None = None, **options: Any) -> Figure | None:
+    """Draw a shape, a domain or a mesh.
+
+    Regions are filled with pale colours, boundaries have strong ones and are named in the legend;
+    embedded paths and points are drawn like boundaries. A domain is drawn through its exact curves,
+    a mesh as the straight cells that it has.
+
+    Parameters
+    ----------
+    x : Shape, Regions, Embed, Pslg or Mesh
+        What to draw; shapes are evaluated first.
+    path : str or PathLike, optional
+        A ``.png``, ``.svg`` or ``.pdf`` file to write.
+    ax : matplotlib.axes.Axes, optional
+        Draw there instead of in a figure of its own.
+    figsize : (float, float), optional
+        Width and height in inches; default after the shape of the domain.
+    color : {"region", "min_angle"}
+        What fills the cells: their region, or their smallest angle with a scale in degrees.
+    legend : bool
+        Default True.
+    title : str, optional
+        Default: counts. An empty string for none.
+    dpi : float
+        Resolution of a PNG, and of a dense mesh within SVG and PDF; default 150.
+
+    Returns
+    -------
+    matplotlib.figure.Figure or None
+        The figure if there is no `path`. It shows itself in a notebook.
+
+    Raises
+    ------
+    InputError
+        For an unknown option, or something that cannot be drawn.
+    FileFormatError
+        If the suffix is not one of the three, or the file cannot be written.
+
+    Examples
+    --------
+    >>> import csgmesh as cm
+    >>> mesh = cm.Mesh([[0, 0], [1, 0], [0, 1]], {"triangle": [[0, 1, 2]]})
+    >>> cm.draw(mesh, "/tmp/one.svg")
+    >>> cm.draw(mesh).axes[0].get_title()
+    '1 triangle, 3 points'
+    """
+    check_options(options, [f.name for f in fields(Options)], "draw")
+    chosen = Options(**options)
+    _check(chosen)
+    target = None if path is None else _target(Path(path))
+    scene = _scene(x)
+    values = None
+    if chosen.color == "min_angle":
+        if not isinstance(x, Mesh):
+            raise InputError(f"draw: color='min_angle' needs a Mesh; got {type(x).__name__}")
+        values = min_angles(scene)
+    from csgmesh.viz.figure import compose, save
+
+    figure = compose(scene, values, chosen)
+    if target is None:
+        return figure
+    save(figure, *target, _METADATA[target[1]], chosen.dpi)
+    return None
+
+
+def _check(options: Options) -> None:
+    check_choice("color", options.color, ("region", "min_angle"), "draw")
+    size = options.figsize
+    if size is not None and not (np.shape(size) == (2,) and min(size) > 0):
+        raise InputError(f"draw: figsize must be two positive lengths in inches; got {size!r}")
+    if not 1 <= options.dpi <= 10_000:
+        raise InputError(f"draw: dpi must be a number from 1 to 10000; got {options.dpi!r}")
+
+
+def min_angles(scene: Scene) -> np.ndarray:
+    """Smallest angle of each cell, degrees, at the corners of the polygon that is drawn."""
+    found = []
+    for polygons, _ in scene.cells:
+        ahead = np.roll(polygons, -1, axis=1) - polygons
+        back = np.roll(polygons, 1, axis=1) - polygons
+        cross = ahead[..., 0] * back[..., 1] - ahead[..., 1] * back[..., 0]
+        angle = np.arctan2(cross, (ahead * back).sum(axis=2)) % (2 * np.pi)
+        found.append(np.degrees(angle.min(axis=1)))
+    return np.concatenate([*found, np.zeros(0)])
+
+
+def _target(path: Path) -> tuple[Path, str]:
+    suffix = path.suffix.lower()
+    if suffix not in _FORMATS:
+        raise FileFormatError(
+            f"{path}: pictures are written as .png, .svg or .pdf; got {suffix!r}; "
+            f"{near(suffix, _FORMATS)}"
+        )
+    return path, _FORMATS[suffix]
+
+
+def _scene(x: object) -> Scene:
+    if isinstance(x, Mesh):
+        if x.dim != 2:
+            raise InputError(f"draw needs a plane mesh; this one has dim {x.dim}")
+        return mesh_scene(x)
+    if isinstance(x, Pslg):
+        return pslg_scene(x, vertices=True)
+    from csgmesh.boundary import evaluate
+    from csgmesh.csg import Embed, Regions, Shape
+
+    if not isinstance(x, (Shape, Regions, Embed)):
+        raise InputError(f"draw knows shapes, Pslg and Mesh; got {type(x).__name__}")
+    return pslg_scene(evaluate(x), vertices=False)
