@@ -63,7 +63,7 @@ def _read_segment(item: Any, what: str, where: str) -> tuple[Any, ...]:
 
 
 def path_contours(vertices: ArrayLike, codes: ArrayLike, where: str) -> list[list[Any]]:
-    """Contours of path arrays; lone moves are skipped."""
+    """Contours of path arrays; those that stay at one point, as fonts have them, are skipped."""
     points = checks.point_array(vertices, "vertices", where).tolist()
     kinds = np.asarray(codes).tolist()
     if len(kinds) != len(points):
@@ -89,7 +89,7 @@ def path_contours(vertices: ArrayLike, codes: ArrayLike, where: str) -> list[lis
             k += count
         else:
             raise ShapeError(f"{where}: codes must be 1, 2, 3, 4 or 79; got {code!r} at {k}")
-    return [c for c in contours if len(c) > 1]
+    return [c for c in contours if any(list(p) != c[0] for _, *ps in c[1:] for p in ps)]
 
 
 def contour_curves(contours: Sequence[Contour]) -> Curves:
