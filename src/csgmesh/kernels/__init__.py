@@ -26,8 +26,7 @@ _HOME = {
     "limit_gradation": "gradation",
     "expected_points": "gradation",
     "orientations": "checks",
-    "delaunay_violations": "checks",
-    "locate": "checks",
+    "in_circles": "checks",
 }
 
 

@@ -18,6 +18,7 @@ Subsegments = namedtuple(
 
 ARC = np.int64(1)
 QUADRATIC = np.int64(2)
+NO_APEX = np.int64(-1)
 BOTH = np.int64(-2)
 STEPS = 60
 
@@ -79,10 +80,48 @@ def shell(near, far, unit):
 
 
 @njit(**HELPER)
-def split_place(xy, subs, k, unit):
+def between_shells(length, ra, rb):
+    """Where to split a segment of two apexes first, as a distance from the first of them."""
+    if ra + rb <= length:
+        return min(max(0.5 * length, ra), length - rb)
+    return length * (ra / (ra + rb))
+
+
+@njit(**HELPER)
+def at_distance(xy, subs, k, px, py, r, near, far):
+    """Parameter of the point of subsegment k at distance r from (px, py), between near and far."""
+    t = 0.5 * (near + far)
+    for _ in range(STEPS):
+        x, y = point_on(xy, subs, k, t)
+        if hypot(x - px, y - py) < r:
+            near = t
+        else:
+            far = t
+        t = 0.5 * (near + far)
+    return t
+
+
+@njit(**HELPER)
+def halfway(xy, subs, k, t0, t1):
+    """Parameter of the point of subsegment k as far from either end."""
+    a = 2 * subs.ends[2 * k]
+    b = 2 * subs.ends[2 * k + 1]
+    t = 0.5 * (t0 + t1)
+    for _ in range(STEPS):
+        x, y = point_on(xy, subs, k, t)
+        if hypot(x - xy[a], y - xy[a + 1]) < hypot(x - xy[b], y - xy[b + 1]):
+            t0 = t
+        else:
+            t1 = t
+        t = 0.5 * (t0 + t1)
+    return t
+
+
+@njit(**HELPER)
+def split_place(xy, subs, k, radius):
     """Where to split subsegment k: x, y and the curve's parameter.
 
-    At the point as far from either end; on the curve of an apex at the distance of a shell.
+    As far from either end, unless there is an apex: then at the distance of one of its shells.
     """
     a = 2 * subs.ends[2 * k]
     b = 2 * subs.ends[2 * k + 1]
@@ -91,35 +130,22 @@ def split_place(xy, subs, k, unit):
     curve = subs.segment_curve[subs.segment[k]]
     straight = curve < 0 or subs.curve_kind[curve] < ARC
     apex = subs.apex[k]
-    if apex < 0:
-        t = 0.5 * (t0 + t1)
-        if not straight:
-            low = t0
-            high = t1
-            for _ in range(STEPS):
-                x, y = point_on(xy, subs, k, t)
-                if hypot(x - xy[a], y - xy[a + 1]) < hypot(x - xy[b], y - xy[b + 1]):
-                    low = t
-                else:
-                    high = t
-                t = 0.5 * (low + high)
+    if apex == NO_APEX:
+        t = 0.5 * (t0 + t1) if straight else halfway(xy, subs, k, t0, t1)
+        x, y = point_on(xy, subs, k, t)
+        return x, y, t
+    v = a if apex == BOTH else 2 * apex
+    da = hypot(xy[a] - xy[v], xy[a + 1] - xy[v + 1])
+    db = hypot(xy[b] - xy[v], xy[b + 1] - xy[v + 1])
+    if apex == BOTH:
+        r = between_shells(db, radius[a // 2], radius[b // 2])
     else:
-        px = xy[2 * apex]
-        py = xy[2 * apex + 1]
-        da = hypot(xy[a] - px, xy[a + 1] - py)
-        db = hypot(xy[b] - px, xy[b + 1] - py)
-        r = shell(min(da, db), max(da, db), unit)
+        r = shell(min(da, db), max(da, db), radius[apex])
+    if straight:
         t = t0 + (t1 - t0) * ((r - da) / (db - da))
-        if not straight:
-            near = t0 if da < db else t1
-            far = t1 if da < db else t0
-            t = 0.5 * (near + far)
-            for _ in range(STEPS):
-                x, y = point_on(xy, subs, k, t)
-                if hypot(x - px, y - py) < r:
-                    near = t
-                else:
-                    far = t
-                t = 0.5 * (near + far)
+    elif da < db:
+        t = at_distance(xy, subs, k, xy[v], xy[v + 1], r, t0, t1)
+    else:
+        t = at_distance(xy, subs, k, xy[v], xy[v + 1], r, t1, t0)
     x, y = point_on(xy, subs, k, t)
     return x, y, t

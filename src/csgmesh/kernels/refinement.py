@@ -35,8 +35,8 @@ from .triangulation import (
     walk,
 )
 
-#: What refinement knows of the wanted mesh. apex_of, radius: apex whose segment a vertex lies on,
-#: radius of an apex's protected shell. size: wanted edge length at each vertex when `graded`.
+#: What refinement knows of the wanted mesh. apex_of, radius: up to two apexes on whose segments a
+#: vertex lies, radius of an apex's protected shell. size: wanted edge length at each vertex when `graded`.
 Aim = namedtuple("Aim", "apex_of radius size graded number todo count")
 
 # Places in `number`.
@@ -76,15 +76,23 @@ def wanted(aim, a, b, c):
 
 
 @njit(**HELPER)
-def excused(xy, aim, u, v):
-    """Whether u and v lie on a common protected shell of an apex: their edge cannot grow."""
-    apex = aim.apex_of[u]
-    if apex < 0 or aim.apex_of[v] != apex:
-        return False
+def same_shell(xy, aim, apex, u, v):
+    """Whether u and v lie on a common protected shell of an apex."""
     du = hypot(xy[2 * u] - xy[2 * apex], xy[2 * u + 1] - xy[2 * apex + 1])
     dv = hypot(xy[2 * v] - xy[2 * apex], xy[2 * v + 1] - xy[2 * apex + 1])
     far = max(du, dv)
     return abs(du - dv) <= SAME_SHELL * far and far <= aim.radius[apex] * (1.0 + SAME_SHELL)
+
+
+@njit(**HELPER)
+def excused(xy, aim, u, v):
+    """Whether u and v lie on a common shell of an apex of both: then their edge cannot grow."""
+    for i in range(2):
+        apex = aim.apex_of[2 * u + i]
+        if apex >= 0 and (aim.apex_of[2 * v] == apex or aim.apex_of[2 * v + 1] == apex):
+            if same_shell(xy, aim, apex, u, v):
+                return True
+    return False
 
 
 @njit(**HELPER)
@@ -276,10 +284,12 @@ def halve(net, subs, aim, h, k, a, b, p, t):
     if apex == BOTH:
         subs.apex[k] = a
         subs.apex[new] = b
-        aim.apex_of[p] = -1
+        aim.apex_of[2 * p] = a
+        aim.apex_of[2 * p + 1] = b
     else:
         subs.apex[new] = apex
-        aim.apex_of[p] = apex
+        aim.apex_of[2 * p] = apex
+        aim.apex_of[2 * p + 1] = -1
     if aim.graded != 0:
         aim.size[p] = 0.5 * (aim.size[a] + aim.size[b])
     return new
@@ -294,8 +304,7 @@ def split(net, subs, aim, q, h, room):
         h = net.twin[h]
     a = net.origin[h]
     b = net.origin[following(h)]
-    unit = aim.radius[subs.apex[k]] if subs.apex[k] >= 0 else 1.0
-    x, y, t = split_place(xy, subs, k, unit)
+    x, y, t = split_place(xy, subs, k, aim.radius)
     p = aim.count[C_POINTS]
     xy[2 * p] = x
     xy[2 * p + 1] = y
@@ -430,7 +439,8 @@ def improve(net, subs, aim, q, t, stamp, b, room):
     p = aim.count[C_POINTS]
     xy[2 * p] = x
     xy[2 * p + 1] = y
-    aim.apex_of[p] = -1
+    aim.apex_of[2 * p] = -1
+    aim.apex_of[2 * p + 1] = -1
     if aim.graded != 0:
         aim.size[p] = interpolated(net, aim, at, x, y)
     aim.count[C_TRIANGLES] = fan(

@@ -134,10 +134,10 @@ class DelaunayRefinement:
             finished = self._refine(refiner, wanted, uniform)
         except BudgetError as error:
             refiner.publish()
-            error.mesh = assemble(work, self._info(work))
+            error.mesh = assemble(work, self._info(work, refiner))
             raise
         refiner.publish()
-        mesh = assemble(work, self._info(work))
+        mesh = assemble(work, self._info(work, refiner))
         if not finished:
             raise BudgetError(_where_it_stopped(mesh, self, size), mesh)
         return mesh
@@ -161,11 +161,13 @@ class DelaunayRefinement:
     def _expected(domain: Pslg, size: float) -> float:
         return float(domain.chord_areas().sum()) * POINTS_PER_AREA / size**2
 
-    def _info(self, work: Workspace) -> dict[str, object]:
+    def _info(self, work: Workspace, refiner: Refiner) -> dict[str, object]:
         return {
             "method": "DelaunayRefinement",
             "options": asdict(self),
             "n_steiner": work.n_points - len(work.domain.points),
+            "n_sharp_corners": int((refiner.radius > 0).sum()),
+            "n_given_up": int(refiner.count[7]),
         }
 
 

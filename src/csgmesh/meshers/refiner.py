@@ -52,8 +52,8 @@ class Refiner:
         domain = work.domain
         self.segment_ends = work.rank[domain.segments].reshape(-1)
         self.segment_curve = domain.segment_curve.astype(np.int32)
-        self.curve_kind = domain.curves.kind
-        self.curve_data = domain.curves.data.reshape(-1)
+        self.curve_kind = domain.curves.kind.copy()
+        self.curve_data = domain.curves.data.reshape(-1).copy()
         self.buckets = np.full((2, N_BUCKETS), -1, np.int32)
         self.items = np.empty(3 * 4096, np.int32)
         self.state = np.array([-1, 0, N_BUCKETS - 1, 0], np.int64)
@@ -154,7 +154,7 @@ class Refiner:
         if 2 * (points + 1) > len(work.points):
             n = 2 * points + 64
             work.points = grown(work.points, 2 * n)
-            self.apex_of = grown(self.apex_of, n)
+            self.apex_of = grown(self.apex_of, 2 * n)
             if self.graded:
                 self.size = grown(self.size, n)
             full = True

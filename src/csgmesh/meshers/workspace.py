@@ -41,11 +41,13 @@ class Workspace:
         self.progress = progress
         n = len(pieces.points)
         keys = np.empty(n, np.int64)
-        kernels.curve_keys(pieces.points.reshape(-1), min(7, max(n.bit_length() // 3 - 2, 0)), keys)
+        # A copy: read-only arrays are another type, for which kernels would be compiled again.
+        flat = np.array(pieces.points).reshape(-1)
+        kernels.curve_keys(flat, min(7, max(n.bit_length() // 3 - 2, 0)), keys)
         self.order = np.argsort(keys, kind="stable")
         self.rank = np.empty(n, np.int32)
         self.rank[self.order] = np.arange(n, dtype=np.int32)
-        self.points = pieces.points[self.order].reshape(-1)
+        self.points = flat.reshape(-1, 2)[self.order].reshape(-1)
         self.n_points = n
         self.n_triangles = 0
         half_edges = 4 * (2 * n + 8)
@@ -157,10 +159,10 @@ class Workspace:
             )
 
     def sharp(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Apex of each subsegment, apex on whose segments each vertex lies, radius by vertex."""
+        """Apex of each subsegment, two apexes of each vertex, radius of the shells by vertex."""
         corners = sharp_corners(self.domain)
         apex = np.full(len(self.pieces.ends), -1, np.int32)
-        apex_of = np.full(self.n_points, -1, np.int32)
+        apex_of = np.full(2 * self.n_points, -1, np.int32)
         radius = np.zeros(self.n_points)
         if not len(corners.vertex):
             return apex, apex_of, radius
@@ -177,9 +179,18 @@ class Workspace:
             late = torn & (self.pieces.share.mean(axis=1) > 0.5)
             apex[torn & ~late] = vertex[torn & ~late, 0]
             apex[late] = vertex[late, 1]
-        for column in (0, 1):
-            at = apex >= 0
-            v = self.ends.reshape(-1, 2)[at, column]
-            other = v != apex[at]
-            apex_of[v[other]] = apex[at][other]
-        return apex, apex_of, radius
+        return apex, self._apexes_of_vertices(apex), radius
+
+    def _apexes_of_vertices(self, apex: np.ndarray) -> np.ndarray:
+        """Up to two apexes on whose segments each vertex lies, (2 n,), -1 where there are fewer."""
+        ends = self.ends.reshape(-1, 2)
+        both = apex == BOTH_APEXES
+        at = apex >= 0
+        vertex = np.concatenate([ends[at].ravel(), ends[both, 0], ends[both, 1]])
+        owner = np.concatenate([np.repeat(apex[at], 2), ends[both, 1], ends[both, 0]])
+        pairs = np.unique(np.column_stack([vertex, owner])[vertex != owner], axis=0)
+        slot = np.arange(len(pairs)) - np.searchsorted(pairs[:, 0], pairs[:, 0])
+        out = np.full((self.n_points, 2), -1, np.int32)
+        kept = slot < 2
+        out[pairs[kept, 0], slot[kept]] = pairs[kept, 1]
+        return out.reshape(-1)
