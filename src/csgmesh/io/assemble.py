@@ -133,6 +133,8 @@ def _mesh(listing: Listing) -> Mesh:
 
 def _plane(listing: Listing) -> np.ndarray:
     points = np.asarray(listing.points, np.float64)
+    if points.ndim != 2 or not len(points) or points.shape[1] not in (2, 3):
+        raise FileFormatError(f"{listing.path} holds no points in the plane")
     bad = ~np.isfinite(points).all(axis=1)
     if bad.any():
         raise FileFormatError(f"{listing.path}: point {int(np.argmax(bad))} is not finite")

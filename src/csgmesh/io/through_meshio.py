@@ -99,7 +99,7 @@ def write(path: Path, mesh: Mesh) -> None:
         **_tagged(form, mesh, whole, n_blocks),
     )
     _foreign(path, "written", importlib.import_module(f"meshio.{form.module}").write, given)
-    if form.module == "ply":
+    if form.module in ("ply", "obj"):
         _without_date(path)
 
 
@@ -156,4 +156,4 @@ def _foreign(path: Path, done: str, function: Any, *args: Any) -> Any:
 def _without_date(path: Path) -> None:
     """Take the time of writing out of a header: equal meshes must give equal bytes."""
     text = path.read_bytes()
-    path.write_bytes(re.sub(rb"(comment Created by meshio)[^\n]*", rb"\1", text, count=1))
+    path.write_bytes(re.sub(rb"(Created by meshio)[^\n]*", rb"\1", text, count=1))
