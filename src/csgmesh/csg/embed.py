@@ -186,9 +186,16 @@ class Embed:
     @staticmethod
     def from_dict(data: dict[str, Any]) -> Embed:
         """The domain that `to_dict` wrote."""
-        inner = data["embed"]
+        inner = data.get("embed") if isinstance(data, dict) else None
+        if not isinstance(inner, dict) or not isinstance(data.get("items"), list):
+            raise ShapeError("from_dict: a dictionary with a domain and a list of items is needed")
         shape = Regions.from_dict(inner) if "regions" in inner else Shape.from_dict(inner)
-        made: dict[str, type[EmbeddedPath] | type[EmbeddedPoints]]
-        made = {"path": EmbeddedPath, "points": EmbeddedPoints}
-        items = [(kind, value) for item in data["items"] for kind, value in item.items()]
-        return Embed(shape, [made[kind](v["points"], name=v["name"]) for kind, v in items])
+        return Embed(shape, [_read_item(item) for item in data["items"]])
+
+
+def _read_item(item: Any) -> EmbeddedPath | EmbeddedPoints:
+    for kind, made in (("path", EmbeddedPath), ("points", EmbeddedPoints)):
+        if isinstance(item, dict) and isinstance(item.get(kind), dict) and len(item) == 1:
+            value = item[kind]
+            return made(value.get("points"), name=value.get("name"))
+    raise ShapeError(f"from_dict: an embedded item must be a path or points; got {item!r}")

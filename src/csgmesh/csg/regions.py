@@ -106,4 +106,9 @@ class Regions:
     @staticmethod
     def from_dict(data: dict[str, Any]) -> Regions:
         """The regions that `to_dict` wrote."""
-        return Regions({name: Shape.from_dict(shape) for name, shape in data["regions"]})
+        entries = data.get("regions") if isinstance(data, dict) else None
+        if not isinstance(entries, list) or not all(
+            isinstance(entry, list | tuple) and len(entry) == 2 for entry in entries
+        ):
+            raise ShapeError("from_dict: a dictionary with a list of regions is needed")
+        return Regions({name: Shape.from_dict(shape) for name, shape in entries})

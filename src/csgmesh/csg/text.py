@@ -140,6 +140,8 @@ def from_flat(entries: Sequence[tuple[tuple[int, ...] | None, Any]]) -> Shape:
 def _leaf(kind: str, arguments: dict[str, Any]) -> Shape:
     if kind not in Primitive.kinds:
         raise ShapeError(f"from_dict: unknown kind of node {kind!r}")
+    if not isinstance(arguments, dict):
+        raise ShapeError(f"from_dict: {kind} needs a dictionary of arguments; got {arguments!r}")
     try:
         return Primitive.kinds[kind](**arguments)
     except TypeError as problem:
@@ -186,22 +188,42 @@ def from_dict(data: dict[str, Any]) -> Shape:
         if not isinstance(entry, dict) or len(entry) != 1:
             raise ShapeError(f"from_dict: node {number} must have one key; got {entry!r}")
         ((kind, value),) = entry.items()
-        if kind in SYMBOLS or kind == "complement":
-            children, rest = (value if kind in SYMBOLS else [value]), []
-        elif kind == "named":
-            children, rest = [value.get("shape")], [value.get("name")]
-        elif kind == "transform":
-            children, rest = [value.get("shape")], [value.get("matrix"), value.get("offset")]
+        if kind in _OPERATIONS:
+            children, rest = _read_operation(kind, value, number)
+            built.append(_node(kind, rest, [built[child] for child in children]))
         else:
             built.append(_leaf(kind, value))
-            continue
-        for child in children:
-            if not isinstance(child, int) or not 0 <= child < number:
-                raise ShapeError(
-                    f"from_dict: node {number} ({kind}) must refer to earlier nodes; got {child!r}"
-                )
-        built.append(_node(kind, rest, [built[child] for child in children]))
     return built[-1]
+
+
+#: Keys of nodes that are not leaves, and what their values hold beside ``shape``.
+_OPERATIONS: dict[str, tuple[str, ...]] = {
+    **dict.fromkeys(SYMBOLS, ()),
+    "complement": (),
+    "named": ("name",),
+    "transform": ("matrix", "offset"),
+}
+
+
+def _read_operation(kind: str, value: Any, number: int) -> tuple[list[int], list[Any]]:
+    """Numbers of the children, and the other arguments."""
+    keys = _OPERATIONS[kind]
+    if keys:
+        if not isinstance(value, dict) or set(value) != {"shape", *keys}:
+            raise ShapeError(
+                f"from_dict: node {number} ({kind}) must have the keys shape, {', '.join(keys)}; "
+                f"got {value!r}"
+            )
+        children, rest = [value["shape"]], [value[key] for key in keys]
+    else:
+        children, rest = ([value] if kind == "complement" else value), []
+    if not isinstance(children, list) or not all(
+        type(child) is int and 0 <= child < number for child in children
+    ):
+        raise ShapeError(
+            f"from_dict: node {number} ({kind}) must refer to earlier nodes; got {children!r}"
+        )
+    return children, rest
 
 
 def _plain(value: Any) -> Any:

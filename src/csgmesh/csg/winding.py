@@ -66,6 +66,7 @@ class WindingGrid:
     pieces: _Pieces
     low: np.ndarray
     high: np.ndarray
+    size: np.ndarray  # of a cell
     shape: tuple[int, int]  # columns, rows
     before: np.ndarray  # (rows, columns): winding at the lower left corner of each cell
     start: np.ndarray  # entries of cell k are start[k] to start[k + 1]
@@ -79,7 +80,8 @@ class WindingGrid:
         both = np.concatenate([pieces.p0, pieces.p1])
         low, high = both.min(axis=0), both.max(axis=0)
         columns, rows = _resolution(pieces, high - low)
-        size = np.maximum(high - low, np.finfo(float).tiny) / (columns, rows)
+        # Curves along a single line have no extent across it, and one cell of any size there.
+        size = np.where(high > low, (high - low) / (columns, rows), 1.0)
         piece, row, crossing = _row_entries(pieces, low, size, rows)
         before = _edge_windings(pieces, piece, row, crossing, low, size, (columns, rows))
         first, last = _column_span(pieces, piece, row, low, high, size, columns)
@@ -93,6 +95,7 @@ class WindingGrid:
             pieces,
             low,
             high,
+            size,
             (columns, rows),
             before,
             start,
@@ -107,9 +110,8 @@ class WindingGrid:
         if len(near) == 0:
             return result
         columns, rows = self.shape
-        size = (self.high - self.low) / self.shape
-        column = _cell(points[near, 0], self.low[0], size[0], columns)
-        row = _cell(points[near, 1], self.low[1], size[1], rows)
+        column = _cell(points[near, 0], self.low[0], self.size[0], columns)
+        row = _cell(points[near, 1], self.low[1], self.size[1], rows)
         result[near] = self.before[row, column]
         cell = row * columns + column
         count = self.start[cell + 1] - self.start[cell]
@@ -119,7 +121,7 @@ class WindingGrid:
             if len(at):
                 local = np.repeat(np.arange(len(at)), count[at])
                 entry = _ranges(self.start[cell[at]], count[at])
-                lower = self.low[1] + row[at] * size[1]
+                lower = self.low[1] + row[at] * self.size[1]
                 turns = self._turns(points[near[at]][local], entry, column[at][local], lower[local])
                 result[near[at]] += np.bincount(local, turns, len(at)).astype(np.int64)
         return result
@@ -133,8 +135,8 @@ class WindingGrid:
         x, y = point[:, 0], point[:, 1]
         crossing = self.entry_crossing[entry]
         crosses = ~np.isnan(crossing)
-        width = (self.high[0] - self.low[0]) / self.shape[0]
-        crossing_column = _cell(np.where(crosses, crossing, 0.0), self.low[0], width, self.shape[0])
+        known = np.where(crosses, crossing, self.low[0])
+        crossing_column = _cell(known, self.low[0], self.size[0], self.shape[0])
         here = crosses & (crossing_column == column)
         right = crosses & ((crossing_column < column) | (here & (crossing <= x)))
         turns = np.where(here & right, np.where(b[:, 1] > a[:, 1], -1.0, 1.0), 0.0)
