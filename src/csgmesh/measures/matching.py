@@ -99,16 +99,18 @@ def match_facets(domain: Pslg, ends: np.ndarray, tolerance: float) -> Matching:
     curve = np.full(n, -1)
     interval, distance = np.zeros((n, 2)), np.zeros((n, 2))
     is_vertex = np.zeros((n, 2), bool)
-    facet, segment = _candidates(domain, track, ends, tolerance)
+    boxes = _boxes(domain, track, tolerance)
+    facet, segment = _holding(boxes, ends.mean(axis=1))
     found = _within_segments(domain, track, ends, facet, segment, tolerance)
     chosen, which = _best(track, ends, facet, *found[:2], track.curve[segment])
     curve[chosen] = track.curve[segment[which]]
     interval[chosen], distance[chosen] = found[0][which], found[1][which]
     is_vertex[chosen] = found[2][which]
-    rest = np.flatnonzero(curve[facet] < 0)
+    rest = np.flatnonzero(curve < 0)
     if len(rest):
         # A mesh of a finer or coarser outline may have facets that span vertices of this one.
-        pairs = np.unique(np.stack([facet[rest], track.curve[segment[rest]]], axis=1), axis=0)
+        facet, segment = _holding(boxes, ends[rest, 0])
+        pairs = np.unique(np.stack([rest[facet], track.curve[segment]], axis=1), axis=0)
         facet, on = pairs[:, 0], pairs[:, 1]
         t, d = _within_curves(track, ends[facet], on)
         good = np.flatnonzero((d <= tolerance).all(axis=1))
@@ -119,24 +121,28 @@ def match_facets(domain: Pslg, ends: np.ndarray, tolerance: float) -> Matching:
     return Matching(track, curve, interval, distance, is_vertex, segment, is_reversed)
 
 
-def _candidates(
-    domain: Pslg, track: Track, ends: np.ndarray, tolerance: float
-) -> tuple[np.ndarray, np.ndarray]:
-    """Pairs of a facet and a segment whose curve piece may hold its middle."""
-    if not len(ends) or not len(track.curve):
-        return np.zeros(0, np.int64), np.zeros(0, np.int64)
+def _boxes(domain: Pslg, track: Track, tolerance: float) -> Boxes | None:
+    """Boxes that hold each segment and its curve piece; None for no segments."""
+    if not len(track.curve):
+        return None
     chord = domain.points[domain.segments]
     lo, hi = chord.min(axis=1), chord.max(axis=1)
     pad = np.zeros(len(lo))
     for share in (0.25, 0.5, 0.75):
-        t = (1 - share) * track.interval[:, 0] + share * track.interval[:, 1]
+        t = track.interval @ [1 - share, share]
         p = track.curves.points(track.curve, t)
         lo, hi = np.minimum(lo, p), np.maximum(hi, p)
         middle = (1 - share) * chord[:, 0] + share * chord[:, 1]
         pad = np.maximum(pad, np.hypot(*(p - middle).T))
     pad = (pad + tolerance)[:, None]
-    middle = ends.mean(axis=1)
-    pairs = Boxes(lo - pad, hi + pad).overlapping(middle, middle)
+    return Boxes(lo - pad, hi + pad)
+
+
+def _holding(boxes: Boxes | None, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Pairs of a point and a segment whose box holds it."""
+    if boxes is None or not len(points):
+        return np.zeros(0, np.int64), np.zeros(0, np.int64)
+    pairs = boxes.overlapping(points, points)
     return pairs[:, 0], pairs[:, 1]
 
 
@@ -174,7 +180,7 @@ def _within_curves(track: Track, ends: np.ndarray, on: np.ndarray) -> tuple[np.n
     The two ends lie on both sides of the middle, which tells the two ends of a closed curve apart.
     """
     lo, hi = track.extent[on].T
-    middle = track.curves.project(on, ends.mean(axis=1), lo, hi)
+    middle = _project_onto_halves(track, on, ends.mean(axis=1), lo, hi)
     options = []
     for first, second in (((lo, middle), (middle, hi)), ((middle, hi), (lo, middle))):
         t = np.stack(
@@ -189,6 +195,17 @@ def _within_curves(track: Track, ends: np.ndarray, on: np.ndarray) -> tuple[np.n
     (t, d), (other_t, other_d) = options
     better = other_d.max(axis=1) < d.max(axis=1)
     return np.where(better[:, None], other_t, t), np.where(better[:, None], other_d, d)
+
+
+def _project_onto_halves(
+    track: Track, on: np.ndarray, points: np.ndarray, lo: np.ndarray, hi: np.ndarray
+) -> np.ndarray:
+    """Nearest parameters, also where a closed curve's two ends are equally near."""
+    half = 0.5 * (lo + hi)
+    t = track.curves.project(on, points, lo, half)
+    s = track.curves.project(on, points, half, hi)
+    t_gap, s_gap = (track.curves.points(on, x) - points for x in (t, s))
+    return np.where(np.hypot(*s_gap.T) < np.hypot(*t_gap.T), s, t)
 
 
 def _best(

@@ -139,7 +139,7 @@ def quality(mesh: Mesh) -> Quality:
     cell area                  0.5         0.5         0.5
     <BLANKLINE>
     smallest angle of the cells
-      40 to 50    2  ########################################
+      40 to 50   2  ########################################
     """
     if mesh.dim != 2:
         raise InputError(f"quality measures plane meshes; this one has dim {mesh.dim}")

@@ -37,8 +37,8 @@ def check_angles(case: Case) -> Check:
     rule, bound = "smallest angle", case.min_angle
     smallest = case.quality.min_angle
     if bound is None:
-        low = f"; the smallest is {smallest.min():.2f}°" if len(smallest) else ""
-        return Check.skipped(rule, "no bound was asked for" + low)
+        found = f"; the smallest is {smallest.min():.2f}°" if len(smallest) else ""
+        return Check.skipped(rule, "no bound was asked for" + found)
     # Rounded coordinates turn an edge by this much.
     shortest = np.maximum(case.quality.min_edge, np.finfo(float).tiny)
     slack = ANGLE_ROUNDING + np.degrees(coordinate_ulp(case.mesh.points) / shortest)
