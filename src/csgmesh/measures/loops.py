@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from fractions import Fraction
 from functools import cmp_to_key
 
@@ -17,14 +18,33 @@ _NEAR = 1e-9
 _NOISE = 1e-12
 
 
+@dataclass(frozen=True)
+class Counts:
+    """Topology of plane sets, an entry a set.
+
+    Attributes
+    ----------
+    components : (n,) int64
+        Components of the interior: what touches at a vertex only is apart.
+    holes : (n,) int64
+        Bounded components of the complement of the closed set: two holes that touch are two.
+    euler : (n,) int64
+        Euler characteristic of the closed set.
+    """
+
+    components: np.ndarray
+    holes: np.ndarray
+    euler: np.ndarray
+
+
 def count_loops(
     points: np.ndarray, segments: np.ndarray, sides: np.ndarray, n_regions: int
-) -> tuple[np.ndarray, np.ndarray]:
-    """Components and holes of the interior of each region.
+) -> Counts:
+    """Count components and holes of regions by walking along their boundaries.
 
-    Each component of an open plane region has one boundary loop with the interior on its left that
-    runs counterclockwise, and one clockwise for each hole. Where a boundary touches itself, the
-    loops are parted as the interior sees them, so holes that touch stay two.
+    With the interior on the left, and turning at each vertex as the interior does, there is one
+    counterclockwise loop a component. With the outside on the left there is one a hole, and one
+    clockwise loop for each component of the closed set.
 
     Parameters
     ----------
@@ -34,15 +54,11 @@ def count_loops(
         Regions on the left and right, -1 outside; equal ones do not bound anything.
     n_regions : int
 
-    Returns
-    -------
-    components, holes : (n_regions,) int64
-
     Examples
     --------
     >>> square = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
     >>> count_loops(square, np.array([[0, 1], [1, 2], [2, 3], [3, 0]]), np.tile([0, -1], (4, 1)), 1)
-    (array([1]), array([0]))
+    Counts(components=array([1]), holes=array([0]), euler=array([1]))
     """
     bounds = sides[:, 0] != sides[:, 1]
     walks, regions = [], []
@@ -51,27 +67,33 @@ def count_loops(
         walks.append(segments[at] if side == 0 else segments[at][:, ::-1])
         regions.append(sides[at, side])
     walk, region = np.concatenate(walks), np.concatenate(regions)
+    components, _ = _loops(points, walk, region, n_regions)
+    holes, pieces = _loops(points, walk[:, ::-1], region, n_regions)
+    return Counts(components, holes, pieces - holes)
+
+
+def region_counts(domain: Pslg) -> tuple[Counts, Counts]:
+    """Counts of each region of a domain, and of all of it."""
+    each = count_loops(
+        domain.points, domain.segments, domain.segment_region, len(domain.region_names)
+    )
+    whole = np.where(domain.segment_region >= 0, 0, -1)
+    return each, count_loops(domain.points, domain.segments, whole, 1)
+
+
+def _loops(
+    points: np.ndarray, walk: np.ndarray, region: np.ndarray, n: int
+) -> tuple[np.ndarray, np.ndarray]:
+    """Number of counterclockwise and of clockwise loops of each region."""
     n_loops, loop = connected(len(walk), np.arange(len(walk)), _next(points, walk, region))
     sign = _signs(points, walk, loop, n_loops)
     owner = np.zeros(n_loops, np.int64)
     owner[loop] = region
-    return (
-        np.bincount(owner[sign > 0], minlength=n_regions),
-        np.bincount(owner[sign < 0], minlength=n_regions),
-    )
-
-
-def region_counts(domain: Pslg) -> tuple[np.ndarray, np.ndarray]:
-    """Components and holes of each region of a domain, and of all of it as the last entry."""
-    n = len(domain.region_names)
-    each = count_loops(domain.points, domain.segments, domain.segment_region, n)
-    whole = np.where(domain.segment_region >= 0, 0, -1)
-    total = count_loops(domain.points, domain.segments, whole, 1)
-    return np.r_[each[0], total[0]], np.r_[each[1], total[1]]
+    return np.bincount(owner[sign > 0], minlength=n), np.bincount(owner[sign < 0], minlength=n)
 
 
 def _next(points: np.ndarray, walk: np.ndarray, region: np.ndarray) -> np.ndarray:
-    """The half-segment after each along the boundary of its region, (h,)."""
+    """The half-segment after each that keeps the same set on its left, (h,)."""
     h = len(walk)
     vertex = np.r_[walk[:, 1], walk[:, 0]]
     away = np.r_[walk[:, 0], walk[:, 1]]
@@ -84,7 +106,7 @@ def _next(points: np.ndarray, walk: np.ndarray, region: np.ndarray) -> np.ndarra
     first = np.flatnonzero(start)
     last = np.r_[first[1:], 2 * h][: len(first)] - 1
     _sort_exactly(points, vertex, away, order, angle, first, last)
-    # Around a vertex the interior lies clockwise of an arriving half-segment, up to a leaving one.
+    # Around a vertex what is on the left lies clockwise of an arriving half-segment.
     clockwise = np.empty(2 * h, np.int64)
     clockwise[order[1:]] = order[:-1]
     clockwise[order[first]] = order[last]

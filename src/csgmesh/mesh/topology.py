@@ -50,6 +50,11 @@ class Edges:
         return self.n_left + self.n_right
 
     @property
+    def sides(self) -> tuple[np.ndarray, np.ndarray]:
+        """`left` and `right`."""
+        return self.left, self.right
+
+    @property
     def is_boundary(self) -> np.ndarray:
         """Which edges have one cell, (e,) bool."""
         return self.count == 1
@@ -136,36 +141,33 @@ def components(edges: Edges, is_open: np.ndarray | None = None) -> tuple[int, np
     return connected(edges.n_cells, edges.left[passes], edges.right[passes])
 
 
-def interior_euler(edges: Edges, component: np.ndarray, is_open: np.ndarray) -> np.ndarray:
-    """Euler characteristic of each component of the interior, (n_components,).
+def closure_counts(edges: Edges, group: np.ndarray, n_groups: int) -> tuple[np.ndarray, np.ndarray]:
+    """Components and Euler characteristic of the closed set that each group of cells covers.
 
-    A vertex at which the boundary touches itself counts once for each fan of cells around it, so
-    that holes that touch each other stay two holes. Its edges count likewise. For a plane domain
-    this is one less the number of holes.
+    Here cells that share a vertex are connected; components less Euler characteristic are the
+    holes, and two holes that touch are two.
 
     Parameters
     ----------
     edges : Edges
-    component : (n_cells,) int64
-    is_open : (e,) bool
-        Edges that components were formed through.
+    group : (n_cells,) int64
+    n_groups : int
+
+    Returns
+    -------
+    components, euler : (n_groups,) int64
     """
-    n = int(component.max()) + 1 if len(component) else 0
-    cells = np.bincount(component, minlength=n)
-    half = component[edges.half_edge_cell]
-    through = is_open & (edges.left >= 0) & (edges.right >= 0)
-    # A closed edge belongs to both cells beside it, an open one to the two of them together.
-    shared = np.bincount(component[edges.left[through]], minlength=n)
-    n_edges = np.bincount(half, minlength=n) - shared
-    fan, n_fans = _fans(edges, through)
-    one = np.zeros(n_fans, np.int64)
-    one[fan] = half
-    return np.bincount(one, minlength=n) - n_edges + cells
-
-
-def euler_characteristic(edges: Edges) -> int:
-    """Vertices less edges plus cells of the closed complex; unused points do not count."""
-    return len(np.unique(edges.points)) - len(edges.points) + edges.n_cells
+    owner = group[edges.half_edge_cell]
+    keys, corner = np.unique(owner * edges.n_points + edges.half_edges[:, 0], return_inverse=True)
+    _, label = connected(len(keys), corner, corner[_next_half_edge(edges)])
+    of_vertex = keys // max(edges.n_points, 1)
+    _, first = np.unique(label, return_index=True)
+    left, right = (np.where(side >= 0, np.r_[group, -1][side], -1) for side in edges.sides)
+    n_edges = np.bincount(left[left >= 0], minlength=n_groups)
+    n_edges += np.bincount(right[(right >= 0) & (right != left)], minlength=n_groups)
+    euler = np.bincount(of_vertex, minlength=n_groups) - n_edges
+    euler += np.bincount(group, minlength=n_groups)
+    return np.bincount(of_vertex[first], minlength=n_groups), euler
 
 
 def _half_edges(cells: Mapping[str, np.ndarray]) -> tuple[np.ndarray, np.ndarray, int]:
@@ -176,24 +178,6 @@ def _half_edges(cells: Mapping[str, np.ndarray]) -> tuple[np.ndarray, np.ndarray
         owners.append(np.repeat(np.arange(before, before + len(connectivity)), len(local)))
         before += len(connectivity)
     return np.concatenate(rows), np.concatenate(owners), before
-
-
-def _fans(edges: Edges, through: np.ndarray) -> tuple[np.ndarray, int]:
-    """Fan around a vertex to which the start of each half-edge belongs, and their number."""
-    n = len(edges.half_edges)
-    # The corner at a half-edge's start meets, across its edge, the corner of the other cell there:
-    # the half-edge after the twin.
-    after = _next_half_edge(edges)
-    twin = np.full(n, -1)
-    forwards = edges.half_edges[:, 0] < edges.half_edges[:, 1]
-    ahead, back = np.full(len(edges.points), -1), np.full(len(edges.points), -1)
-    ahead[edges.half_edge_edge[forwards]] = np.flatnonzero(forwards)
-    back[edges.half_edge_edge[~forwards]] = np.flatnonzero(~forwards)
-    twin[forwards] = back[edges.half_edge_edge[forwards]]
-    twin[~forwards] = ahead[edges.half_edge_edge[~forwards]]
-    at = np.flatnonzero(through[edges.half_edge_edge])
-    count, fan = connected(n, at, after[twin[at]])
-    return fan, count
 
 
 def _next_half_edge(edges: Edges) -> np.ndarray:

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from csgmesh.measures.loops import region_counts
+from csgmesh.measures.loops import Counts, region_counts
 from csgmesh.measures.results import Check, Failure, offenders
 from csgmesh.measures.rules.case import Case
 from csgmesh.mesh.orientation import orientations
-from csgmesh.mesh.topology import components, connected, interior_euler
+from csgmesh.mesh.topology import closure_counts, components, connected
 from csgmesh.spatial import Boxes
 
 
@@ -159,37 +159,38 @@ def _covered_loops(case: Case, boundary: np.ndarray) -> list[Failure]:
 
 def check_topology(case: Case) -> Check:
     """Each region, and the whole, has as many components and holes as the domain."""
-    rule, edges = "components and holes", case.edges
-    region = np.r_[case.cell_region, -1]
+    rule, region = "components and holes", case.cell_region
     n = len(case.mesh.region_names)
-    same = region[edges.left] == region[edges.right]
-    parts, holes = _counts(case, same, case.cell_region, n)
-    everything = np.ones(len(edges.points), bool)
-    whole = _counts(case, everything, np.zeros(len(case.cell_region), np.int64), 1)
-    summary = f"{whole[0][0]} components, {whole[1][0]} holes, Euler {whole[0][0] - whole[1][0]}"
+    outer = np.r_[region, -1]
+    inner = outer[case.edges.left] == outer[case.edges.right]
+    each = _counts(case, inner, region, n)
+    whole = each if n == 1 else _counts(case, inner | True, np.zeros_like(region), 1)
     if case.domain is None:
-        return Check.skipped(rule, f"no domain to compare with; {summary}")
-    wanted_parts, wanted_holes = region_counts(case.domain)
+        return Check.skipped(rule, f"no domain to compare with; {_told(whole, 0)}")
+    wanted_each, wanted_whole = region_counts(case.domain)
     failures = []
-    if (whole[0][0], whole[1][0]) != (wanted_parts[-1], wanted_holes[-1]):
-        wanted = f"{wanted_parts[-1]} components and {wanted_holes[-1]} holes"
-        failures.append(Failure(rule, f"the domain has {wanted}; the mesh has {summary}"))
+    if _told(whole, 0) != _told(wanted_whole, 0):
+        message = f"the domain has {_told(wanted_whole, 0)}; the mesh has {_told(whole, 0)}"
+        failures.append(Failure(rule, message))
     for i, j in enumerate(case.region_of_mesh[:n].tolist()):
-        if j >= 0 and (parts[i], holes[i]) != (wanted_parts[j], wanted_holes[j]):
-            wanted = f"{wanted_parts[j]} components and {wanted_holes[j]} holes"
-            message = f"region {case.mesh.region_names[i]!r} has {wanted} in the domain; "
-            message += f"the mesh has {parts[i]} and {holes[i]}"
+        if j >= 0 and _told(each, i) != _told(wanted_each, j):
+            message = f"region {case.mesh.region_names[i]!r} of the domain has "
+            message += f"{_told(wanted_each, j)}; the mesh has {_told(each, i)}"
             failures.append(Failure(rule, message, (), "region", (i,)))
-    return Check.of(rule, n, failures, summary)
+    return Check.of(rule, n, failures, _told(whole, 0))
 
 
-def _counts(
-    case: Case, is_open: np.ndarray, region: np.ndarray, n: int
-) -> tuple[np.ndarray, np.ndarray]:
+def _counts(case: Case, is_open: np.ndarray, group: np.ndarray, n: int) -> Counts:
     count, component = components(case.edges, is_open)
     owner = np.zeros(count, np.int64)
-    owner[component] = region
-    parts = np.bincount(owner, minlength=n)
-    euler = np.zeros(n, np.int64)
-    np.add.at(euler, owner, interior_euler(case.edges, component, is_open))
-    return parts, parts - euler
+    owner[component] = group
+    pieces, euler = closure_counts(case.edges, group, n)
+    return Counts(np.bincount(owner, minlength=n), pieces - euler, euler)
+
+
+def _told(counts: Counts, i: int) -> str:
+    parts, holes = int(counts.components[i]), int(counts.holes[i])
+    return (
+        f"{parts:,} component{'s' * (parts != 1)}, {holes:,} hole{'s' * (holes != 1)}, "
+        f"Euler characteristic {counts.euler[i]}"
+    )
