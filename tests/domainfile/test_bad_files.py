@@ -155,8 +155,9 @@ BAD = {
     "option out of range": (
         PLATE + "mesh: {delaunay_refinement: {min_angle: 50}}\n", 3, 41, "min_angle must",
     ),
-    "flag a number": (
-        PLATE + "mesh: {delaunay_refinement: {improve: 1}}\n", 3, 39, "expected true or false",
+    "option a flag": (
+        PLATE + "mesh: {delaunay_refinement: {min_angle: true}}\n", 3, 41,
+        "expected a number, not true",
     ),
     "size left out": (PLATE + "mesh:\n  size:\n", 4, 3, "'size' has no value"),
     "mesh left out": (PLATE + "mesh:\n", 3, 1, "'mesh' has no value"),
@@ -171,6 +172,7 @@ BAD = {
     # output and expect
     "output elsewhere": (PLATE + "output: [a.msh, ../../b.msh]\n", 3, 17, "in the folder of"),
     "output absolute": (PLATE + "output: [/etc/passwd]\n", 3, 10, "in the folder of"),
+    "output of no format": (PLATE + "output: [a.mhs]\n", 3, 10, "did you mean '.msh'"),
     "output a word": (PLATE + "output: a.msh\n", 3, 9, "expected a list, not 'a.msh'"),
     "expected a word": (PLATE + "expect: {area: large}\n", 3, 16, "a comparison such as"),
     "expected a triple": (PLATE + "expect: {cells: [1, 2, 3]}\n", 3, 17, "[lowest, highest]"),

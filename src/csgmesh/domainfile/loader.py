@@ -18,13 +18,20 @@ from csgmesh.domainfile.expect import Expect, Mismatch, mismatches
 from csgmesh.domainfile.expressions import Expression
 from csgmesh.domainfile.fields import ValidationContext
 from csgmesh.domainfile.limits import Limits
+from csgmesh.domainfile.outputs import check_suffix
 from csgmesh.domainfile.parameters import described, resolve_parameters
 from csgmesh.domainfile.parts import Problem, problems_of
 from csgmesh.domainfile.schema import MeshPart, file_model
 from csgmesh.domainfile.shapes import Builder, build_shapes, placed
-from csgmesh.domainfile.sizes import constant_or_size
+from csgmesh.domainfile.sizes import ExpressionSize, constant_or_size
 from csgmesh.domainfile.vocabulary import mesher_classes
-from csgmesh.errors import BudgetError, DomainFileError, ExpressionError, InputError
+from csgmesh.errors import (
+    BudgetError,
+    DomainFileError,
+    ExpressionError,
+    FileFormatError,
+    InputError,
+)
 
 if TYPE_CHECKING:
     from csgmesh.mesh import Mesh
@@ -139,8 +146,9 @@ class DomainFile:
         """An error of the pipeline at the size it is about, or else at ``mesh``."""
         message = str(error)
         sizes = self.size if isinstance(self.size, Mapping) else {}
-        for name in sizes:
-            if repr(name) in message:
+        for name, size in sizes.items():
+            text = size.expression.text if isinstance(size, ExpressionSize) else name
+            if repr(name) in message or repr(text) in message:
                 return self.document.error(message, ("mesh", "size", name), key=True)
         return self.document.error(message, ("mesh", "size"), key=True)
 
@@ -269,6 +277,10 @@ def _output(document: Document, path: Path, number: int, name: str) -> Path:
             f"output must be a file in the folder of the domain file, not {name!r}",
             ("output", number),
         )
+    try:
+        check_suffix(given)
+    except FileFormatError as error:
+        raise document.error(str(error), ("output", number)) from None
     return path.parent / given
 
 

@@ -25,6 +25,10 @@ from csgmesh.domainfile.vocabulary import (
 DIALECT = "https://json-schema.org/draft/2020-12/schema"
 
 
+_SHAPES = (*BOOLEANS, "shape", "complement")
+_WHOLES = ("regions", "embed")
+
+
 class _Or:
     """Marks a field that takes a mapping, or a value of a simple type as it is."""
 
@@ -111,7 +115,7 @@ class _DomainPart(ShapePart):
     def check(self) -> None:
         """As of shapes; and materials are not transformed."""
         super().check()
-        if self.source in ("regions", "embed") and self.operations:
+        if self.source in _WHOLES and self.operations:
             raise complaint(
                 f"{self.source} takes no transformations; transform its shapes",
                 path=(self.operations[0],),
@@ -228,12 +232,29 @@ def json_schema() -> dict[str, Any]:
     >>> json_schema()["required"]
     ['csgmesh']
     """
-    schema = file_model().model_json_schema()
-    return {"$schema": DIALECT, "title": "csgmesh domain file", **_without_nulls(schema)}
+    schema = _without_nulls(file_model().model_json_schema())
+    parts = schema["$defs"]
+    for name, part in parts.items():
+        if name.endswith("Arguments"):
+            parts[name] = _with_short_form(part)
+    for name, sources in (("Shape", _SHAPES), ("Domain", (*_SHAPES, *_WHOLES))):
+        keys = (*primitives(), *sources)
+        parts[name]["anyOf"] = [{"required": [key]} for key in keys]
+    schema["anyOf"] = [{"required": ["domain"]}, {"required": ["regions"]}]
+    return {"$schema": DIALECT, **schema, "title": "csgmesh domain file"}
+
+
+def _with_short_form(part: dict[str, Any]) -> dict[str, Any]:
+    """The schema of arguments, which may also be the sole required one, or nothing."""
+    required = part.get("required", [])
+    if len(required) > 1:
+        return part
+    short = part["properties"][required[0]] if required else {"type": "null"}
+    return {"description": part.get("description", ""), "anyOf": [part, short]}
 
 
 def _without_nulls(schema: Any) -> Any:
-    """The schema less ``default: null``: an optional key is left out, not null."""
+    """The schema less empty defaults: an optional key is left out, not null."""
     if isinstance(schema, dict):
         return {
             key: _without_nulls(value)
