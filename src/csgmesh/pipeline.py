@@ -121,4 +121,5 @@ def check(mesh: Mesh, shape: Any = None) -> Certificate:
 
 
 def _deviation_of(mesh: Mesh) -> float | None:
-    return mesh.domain.deviation if mesh.domain is not None else None
+    # A domain of straight segments states 0, which is no deviation to ask for.
+    return mesh.domain.deviation or None if mesh.domain is not None else None
