@@ -73,7 +73,7 @@ def _excused(case: Case, cells: np.ndarray) -> np.ndarray:
         corners = case.mesh.points[rows[cells[at] - before]]
         pairs = boxes.overlapping(corners.min(axis=1), corners.max(axis=1))
         reach = np.hypot(*np.moveaxis(corners[pairs[:, 0]] - apexes[pairs[:, 1], None], 2, 0))
-        near = (reach.max(axis=1) <= radius[pairs[:, 1]] + slack) | (reach.min(axis=1) <= slack)
+        near = reach.min(axis=1) <= radius[pairs[:, 1]] + slack
         out[at[pairs[near, 0]]] = True
         before += len(rows)
     return out
