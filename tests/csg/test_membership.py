@@ -49,6 +49,20 @@ def test_many_regions_the_last_one_wins() -> None:
     assert np.array_equal(compile_shape(grains).region(points), last)
 
 
+def test_many_nearly_equal_leaves_are_cut_away() -> None:
+    ellipses = [cm.Ellipse((0, 0), (4 + k / 500, 2), 30) for k in range(60)]
+    boxes = [cm.Box((-5, -3), (5 + k / 500, 3)).rotate(20) for k in range(60)]
+    shape = cm.symmetric_difference(ellipses) | cm.intersection(boxes)
+    points = RNG.uniform(-6, 6, (20_000, 2))
+    z = (points[:, 0] + 1j * points[:, 1]) * np.exp(-1j * np.radians(30))
+    odd = np.zeros(len(points), int)
+    for k in range(60):
+        odd += (z.real / (4 + k / 500)) ** 2 + (z.imag / 2) ** 2 <= 1
+    w = (points[:, 0] + 1j * points[:, 1]) * np.exp(-1j * np.radians(20))
+    within = (np.abs(w.real) <= 5) & (np.abs(w.imag) <= 3)
+    assert np.array_equal(shape.contains(points), (odd % 2 == 1) | within)
+
+
 def test_few_points_and_none() -> None:
     disk = cm.Disk((0, 0), 1)
     assert disk.contains((0, 0)).tolist() == [True]

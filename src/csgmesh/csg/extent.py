@@ -172,7 +172,8 @@ def _clipped(normals: np.ndarray, offsets: np.ndarray) -> tuple[np.ndarray, np.n
     if (corners[2] < corners[0]).any():
         return np.zeros((0, 2)), lines[:0]
     for k in range(4, len(normals)):
-        out = corners @ normals[k] - offsets[k] > 0.0
+        height = corners @ normals[k] - offsets[k]
+        out = height > 0.0
         if not out.any():
             continue
         if out.all():
@@ -180,17 +181,23 @@ def _clipped(normals: np.ndarray, offsets: np.ndarray) -> tuple[np.ndarray, np.n
         # The kept corners are one run of the cycle: turn it to the front.
         (first,) = np.nonzero(~out & np.roll(out, 1))
         turn = -int(first[0])
-        corners, lines, out = (np.roll(a, turn, axis=0) for a in (corners, lines, out))
+        corners, lines, height = (np.roll(a, turn, axis=0) for a in (corners, lines, height))
         kept = int((~out).sum())
-        leaving = _meeting(normals, offsets, int(lines[kept - 1]), k)
-        entering = _meeting(normals, offsets, k, int(lines[-1]))
-        corners = np.concatenate([corners[:kept], [leaving, entering]])
+        ends = []
+        for inner, outer, line in ((kept - 1, kept, lines[kept - 1]), (0, -1, lines[-1])):
+            share = height[inner] / (height[inner] - height[outer])
+            between = corners[inner] + share * (corners[outer] - corners[inner])
+            ends.append(_meeting(normals[[line, k]], offsets[[line, k]], between))
+        corners = np.concatenate([corners[:kept], ends])
         lines = np.concatenate([lines[:kept], [k, lines[-1]]])
     return corners, lines
 
 
-def _meeting(normals: np.ndarray, offsets: np.ndarray, i: int, j: int) -> np.ndarray:
-    (a, b), (c, d) = normals[i], normals[j]
-    p, q = offsets[i], offsets[j]
+def _meeting(normals: np.ndarray, offsets: np.ndarray, near: np.ndarray) -> np.ndarray:
+    """Where two lines meet; the point `near` it if they are too parallel to say better."""
+    (a, b), (c, d) = normals
+    p, q = offsets
     det = a * d - b * c
+    if abs(det) < _PARALLEL:
+        return near
     return np.array((p * d - b * q, a * q - p * c)) / det

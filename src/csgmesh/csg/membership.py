@@ -14,6 +14,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from csgmesh.csg.extent import code_bounds
+from csgmesh.csg.screen import OPEN, Screen
+
 if TYPE_CHECKING:
     from csgmesh.csg.program import Code, Leaf
 
@@ -31,6 +34,10 @@ _CHUNK = 32_768
 Instruction = tuple[int, np.ndarray, tuple[bool, ...]]
 
 
+#: Programs of so few leaves are tested rather than cut.
+_SIMPLE = 4
+
+
 @dataclass(frozen=True, eq=False)
 class _Function:
     """A region as instructions in postfix order; `negated` applies to the last result."""
@@ -39,6 +46,10 @@ class _Function:
     negated: bool
     leaves: np.ndarray
     n_literals: int
+
+
+#: Region numbers, increasing, and their functions.
+_Candidates = tuple[np.ndarray, list[_Function]]
 
 
 def _function(code: Code) -> _Function:
@@ -77,7 +88,7 @@ def _gathered(instructions: list[Instruction], negated: bool) -> _Function:
 
 
 def _pruned(function: _Function, state: np.ndarray) -> _Function | bool:
-    """The function where leaves have a `state` of 1 (inside), 0 (outside) or 2 (either)."""
+    """The function where leaves have a `state` of `IN`, `OUT` or `OPEN`."""
     out: list[Instruction] = []
     # Values: True, False, or None for what is still open; where its instructions begin; negated.
     stack: list[tuple[bool | None, int, bool]] = []
@@ -86,8 +97,8 @@ def _pruned(function: _Function, state: np.ndarray) -> _Function | bool:
         del stack[len(stack) - len(flags) :]
         start = taken[0][1] if taken else len(out)
         values = state[literals >> 1]
-        open_literals = literals[values == 2]
-        known = values[values != 2] ^ (literals[values != 2] & 1)
+        open_literals = literals[values == OPEN]
+        known = values[values != OPEN] ^ (literals[values != OPEN] & 1)
         flagged = list(zip(taken, flags, strict=True))
         constants = [value ^ flag for (value, _, _), flag in flagged if value is not None]
         kept = tuple([negated ^ flag for (value, _, negated), flag in flagged if value is None])
@@ -143,45 +154,45 @@ class Classifier:
     """All regions of a program, ready to classify points."""
 
     leaves: Sequence[Leaf]
-    low: np.ndarray
-    high: np.ndarray
-    checkable: np.ndarray  # leaves that can be seen to cover a box
+    screen: Screen
     functions: list[_Function]
+    low: np.ndarray  # of the regions' boxes
+    high: np.ndarray
 
     @staticmethod
-    def of(leaves: Sequence[Leaf], codes: Sequence[Code]) -> Classifier:
+    def of(leaves: Sequence[Leaf], codes: Sequence[Code], dim: int) -> Classifier:
         """Prepare the regions `codes` over the leaves."""
-        boxes = [leaf.box for leaf in leaves]
+        boxes = [code_bounds(leaves, code, dim) for code in codes]
         return Classifier(
             leaves,
+            Screen.of(leaves),
+            [_function(code) for code in codes],
             np.array([low for low, _ in boxes]),
             np.array([high for _, high in boxes]),
-            np.array([leaf.primitive.convex for leaf in leaves]),
-            [_function(code) for code in codes],
         )
 
     def last(self, points: np.ndarray) -> np.ndarray:
         """The last region that contains each point, −1 for none."""
         result = np.full(len(points), -1, np.int64)
-        state = np.full(len(self.leaves), 2, np.int64)
-        start = list(enumerate(self.functions))
+        state = np.full(len(self.leaves), OPEN, np.int64)
+        start = (np.arange(len(self.functions)), self.functions)
         stack = [(np.arange(len(points)), points, -1, start)] if len(points) else []
         while stack:
-            which, here, sure, functions = stack.pop()
+            which, here, sure, candidates = stack.pop()
             low, high = here.min(axis=0), here.max(axis=0)
-            sure, functions = self._narrowed(low, high, sure, functions, state)
-            work = len(here) * sum(f.n_literals for _, f in functions)
-            if not functions or work <= _SPLIT_WORK or len(here) <= 64 or (high == low).all():
-                result[which] = self._tested(here, sure, functions)
-                continue
-            if work <= 4 * len(here) and len(here) <= _CHUNK:
-                result[which] = self._tested(here, sure, functions)
+            sure, candidates = self._narrowed(low, high, sure, candidates, state)
+            functions = candidates[1]
+            n_literals = sum(f.n_literals for f in functions)
+            few = n_literals * len(here) <= _SPLIT_WORK or len(here) <= 64
+            simple = n_literals <= _SIMPLE and len(here) <= _CHUNK
+            if few or simple or (high == low).all():
+                result[which] = self._tested(here, sure, candidates)
                 continue
             axis = int(np.argmax(high - low))
-            left = here[:, axis] <= 0.5 * (low[axis] + high[axis])
+            left = here[:, axis] <= 0.5 * low[axis] + 0.5 * high[axis]
             for side in (left, ~left):
                 if side.any():
-                    stack.append((which[side], here[side], sure, functions))
+                    stack.append((which[side], here[side], sure, candidates))
         return result
 
     def _narrowed(
@@ -189,39 +200,31 @@ class Classifier:
         low: np.ndarray,
         high: np.ndarray,
         sure: int,
-        functions: list[tuple[int, _Function]],
+        candidates: _Candidates,
         state: np.ndarray,
-    ) -> tuple[int, list[tuple[int, _Function]]]:
+    ) -> tuple[int, _Candidates]:
         """The functions still open in a box, all above the last region that surely covers it."""
-        left: list[tuple[int, _Function]] = []
-        for region, function in reversed(functions):
-            self._classify(function.leaves, low, high, state)
-            pruned = _pruned(function, state) if (state[function.leaves] != 2).any() else function
+        regions, functions = candidates
+        met = ~((self.low[regions] > high) | (self.high[regions] < low)).any(axis=1)
+        kept: list[int] = []
+        left: list[_Function] = []
+        for k in np.flatnonzero(met)[::-1].tolist():
+            pruned: _Function | bool = functions[k]
+            if functions[k].n_literals > _SIMPLE or len(functions) <= _SIMPLE:
+                leaves = functions[k].leaves
+                self.screen.judge(leaves, low, high, state)
+                if (state[leaves] != OPEN).any():
+                    pruned = _pruned(functions[k], state)
             if pruned is True:
-                sure = region
+                sure = int(regions[k])
                 break
             if pruned is not False:
-                left.append((region, pruned))
-        left.reverse()
-        return sure, left
+                kept.append(k)
+                left.append(pruned)
+        return sure, (regions[kept[::-1]], left[::-1])
 
-    def _classify(
-        self, leaves: np.ndarray, low: np.ndarray, high: np.ndarray, state: np.ndarray
-    ) -> None:
-        own_low, own_high = self.low[leaves], self.high[leaves]
-        apart = ((own_low > high) | (own_high < low)).any(axis=1)
-        around = ((own_low <= low) & (own_high >= high)).all(axis=1) & self.checkable[leaves]
-        state[leaves] = np.where(apart, 0, 2)
-        for leaf in leaves[around & ~apart].tolist():
-            if self.leaves[leaf].covers(low, high):
-                state[leaf] = 1
-            elif self.leaves[leaf].misses(low, high):
-                state[leaf] = 0
-
-    def _tested(
-        self, points: np.ndarray, sure: int, functions: list[tuple[int, _Function]]
-    ) -> np.ndarray:
+    def _tested(self, points: np.ndarray, sure: int, candidates: _Candidates) -> np.ndarray:
         result = np.full(len(points), sure, np.int64)
-        for region, function in functions:
+        for region, function in zip(candidates[0].tolist(), candidates[1], strict=True):
             result[_evaluated(function, self.leaves, points)] = region
         return result

@@ -5,7 +5,8 @@ from __future__ import annotations
 from abc import abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass, field, fields
-from typing import TYPE_CHECKING, Any, ClassVar
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
 import numpy as np
 
@@ -14,6 +15,18 @@ from csgmesh.csg.shape import Shape
 
 if TYPE_CHECKING:
     from csgmesh.domain.curves import Curves
+
+
+@dataclass(frozen=True, eq=False)
+class Frame:
+    """The map q = matrix·(p − center) that takes a shape to a unit body.
+
+    Bodies: ``"ball"`` |q| ≤ 1, ``"cube"`` max |q_i| ≤ 1, ``"half_space"`` q_0 ≤ 0.
+    """
+
+    body: Literal["ball", "cube", "half_space"]
+    center: np.ndarray
+    matrix: np.ndarray
 
 
 @dataclass(frozen=True, eq=False, repr=False, init=False)
@@ -72,6 +85,13 @@ class Primitive(Shape):
     def inside(self, points: np.ndarray) -> np.ndarray:
         """Which of the ``(n, dim)`` points lie inside."""
 
+    def unit_frame(self) -> Frame | None:
+        """The affine map that makes a unit body of the shape, or None if there is none.
+
+        Trees of these bodies are cut to a box all leaves at once.
+        """
+        return None
+
     @abstractmethod
     def extent(self, matrix: np.ndarray, offset: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """The box around the image under the map ``matrix @ x + offset``."""
@@ -97,6 +117,10 @@ class Primitive(Shape):
     @property
     def content(self) -> tuple[Any, ...]:
         return (self.kind, *[_hashable(getattr(self, f.name)) for f in fields(self)])
+
+    @cached_property
+    def _hash(self) -> int:
+        return hash((self.content, ()))
 
     def rebuilt(self, children: Sequence[Shape]) -> Shape:
         return self

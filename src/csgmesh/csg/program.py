@@ -13,6 +13,7 @@ from csgmesh.csg.extent import code_bounds
 from csgmesh.csg.membership import Classifier
 from csgmesh.csg.naming import Namer, part_names
 from csgmesh.csg.nodes import Affine, Boolean, Complement, Named, Primitive, Shape
+from csgmesh.csg.primitive import Frame
 from csgmesh.csg.primitives.half_space import HalfSpace
 from csgmesh.csg.regions import Regions
 from csgmesh.domain.curves import Curves
@@ -89,13 +90,17 @@ class Leaf:
         """Lowest and highest corner of the placed leaf, ±inf where unbounded."""
         return self.box
 
+    def unit_frame(self) -> Frame | None:
+        """The map that takes the placed leaf to a unit body, or None."""
+        frame = self.primitive.unit_frame()
+        if frame is None:
+            return None
+        matrix = frame.matrix if self._inverse is None else frame.matrix @ self._inverse
+        return Frame(frame.body, self.matrix @ frame.center + self.offset, matrix)
+
     def covers(self, low: np.ndarray, high: np.ndarray) -> bool:
         """Whether a box surely lies in the leaf."""
         return self.primitive.convex and bool(self.inside(_corners(low, high)).all())
-
-    def misses(self, low: np.ndarray, high: np.ndarray) -> bool:
-        """Whether a box surely lies outside a half-space, whose own box says nothing."""
-        return isinstance(self.primitive, HalfSpace) and not self.inside(_corners(low, high)).any()
 
 
 def _corners(low: np.ndarray, high: np.ndarray) -> np.ndarray:
@@ -126,7 +131,7 @@ class Program:
 
     @cached_property
     def _classifier(self) -> Classifier:
-        return Classifier.of(self.leaves, [code for _, code in self.regions])
+        return Classifier.of(self.leaves, [code for _, code in self.regions], self.dim)
 
     def contains(self, points: np.ndarray) -> np.ndarray:
         """Which of the points lie in any region: ``(n,)`` bool."""

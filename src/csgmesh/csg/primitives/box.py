@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 
 from csgmesh.csg import checks
-from csgmesh.csg.primitive import Primitive
+from csgmesh.csg.primitive import Frame, Primitive
 from csgmesh.domain.curves import Curves
 from csgmesh.errors import ShapeError
 
@@ -76,6 +76,10 @@ class Box(Primitive):
         result &= y >= self.lo[1]
         result &= y <= self.hi[1]
         return result
+
+    def unit_frame(self) -> Frame:
+        low, high = np.array(self.lo), np.array(self.hi)
+        return Frame("cube", 0.5 * low + 0.5 * high, np.diag(2.0 / (high - low)))
 
     def extent(self, matrix: np.ndarray, offset: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         low = np.minimum(matrix * self.lo, matrix * self.hi).sum(axis=1)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 
 from csgmesh.csg import checks
-from csgmesh.csg.primitive import Primitive
+from csgmesh.csg.primitive import Frame, Primitive
 from csgmesh.csg.primitives.ellipse import quarter_arcs
 from csgmesh.domain.curves import Curves
 
@@ -68,6 +68,10 @@ class Disk(Primitive):
         y *= y
         x += y
         return x <= self.radius * self.radius
+
+    def unit_frame(self) -> Frame:
+        k = 1.0 / self.radius
+        return Frame("ball", np.array(self.center), np.array(((k, 0.0), (0.0, k))))
 
     def extent(self, matrix: np.ndarray, offset: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         middle = matrix @ self.center + offset

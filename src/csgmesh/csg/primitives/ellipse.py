@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 
 from csgmesh.csg import checks, matrices
-from csgmesh.csg.primitive import Primitive
+from csgmesh.csg.primitive import Frame, Primitive
 from csgmesh.domain.curves import Curves
 
 if TYPE_CHECKING:
@@ -84,6 +84,11 @@ class Ellipse(Primitive):
 
     def curves(self) -> tuple[Curves, np.ndarray]:
         return quarter_arcs(np.array(self.center), *self._axes()), np.zeros(4, np.int64)
+
+    def unit_frame(self) -> Frame:
+        c, s = matrices.cos_sin(self.angle)
+        a, b = self.semi_axes
+        return Frame("ball", np.array(self.center), np.array([(c / a, s / a), (-s / b, c / b)]))
 
     def inside(self, points: np.ndarray) -> np.ndarray:
         c, s = matrices.cos_sin(self.angle)

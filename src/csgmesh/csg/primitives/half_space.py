@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 
 from csgmesh.csg import checks
-from csgmesh.csg.primitive import Primitive
+from csgmesh.csg.primitive import Frame, Primitive
 from csgmesh.domain.curves import Curves
 from csgmesh.errors import ShapeError
 
@@ -76,6 +76,11 @@ class HalfSpace(Primitive):
             if n != 0.0:
                 height += (points[:, axis] - p) * n
         return height <= 0.0
+
+    def unit_frame(self) -> Frame:
+        matrix = np.zeros((self.dim, self.dim))
+        matrix[0] = self.normal
+        return Frame("half_space", np.array(self.point), matrix)
 
     def extent(self, matrix: np.ndarray, offset: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         normal = np.linalg.solve(matrix.T, self.normal)
