@@ -43,7 +43,7 @@ def check_deviation(case: Case) -> Check:
     at = np.flatnonzero(case.matching.curve >= 0)
     ends = case.mesh.points[case.facets[at]]
     chord = ends[:, 1] - ends[:, 0]
-    length = np.hypot(*chord.T)
+    length = np.maximum(np.hypot(*chord.T), np.finfo(float).tiny)
     worst = np.zeros(len(at))
     for share in (0.25, 0.5, 0.75):
         t = case.matching.interval[at] @ [1 - share, share]
