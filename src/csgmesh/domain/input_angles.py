@@ -13,6 +13,10 @@ from csgmesh.tolerance import EXCUSED_ANGLE
 ANGLE_ROUNDING = 1e-9
 
 
+#: Fixed-point steps to a point at a given distance along a curve.
+_RADIUS_STEPS = 4
+
+
 @dataclass(frozen=True, eq=False)
 class SharpCorners:
     """Vertices at which segments enclose a piece of the domain at less than 60 degrees.
@@ -24,8 +28,8 @@ class SharpCorners:
     angle : (k,) float64
         The smallest such angle at each, degrees, between the exact curves' tangents.
     radius : (k,) float64
-        Radius of the protected shell: of all pairs of neighbouring segments that enclose such an
-        angle, the largest length that both have.
+        Radius of the protected shell: of all pairs of segments that enclose such an angle, the
+        largest length that both have.
     is_sharp_end : (m, 2) bool
         For each segment whether such an angle lies beside it at its start, at its end.
     """
@@ -70,20 +74,28 @@ def sharp_corners(pslg: Pslg) -> SharpCorners:
     chord = _chords(pslg)
     length = np.hypot(chord[:, 0], chord[:, 1])
     left = pslg.segment_region.T.ravel()
-    heading = np.arctan2(chord[:, 1], chord[:, 0])
+    heading = _headings(pslg, chord, length, vertex)
     order = np.lexsort((heading, vertex))
     after = _next_around(vertex[order])
-    i, j = order, order[after]
-    opening = _openings(heading, _tangents(pslg, chord), i, j)
-    sharp = (left[i] >= 0) & (opening < np.radians(EXCUSED_ANGLE - ANGLE_ROUNDING)) & (i != j)
-    i, j, opening = i[sharp], j[sharp], np.degrees(opening[sharp])
+    opening = _openings(heading, _tangents(pslg, chord), order, order[after])
+    limit = np.radians(EXCUSED_ANGLE - ANGLE_ROUNDING)
+    inside = (left[order] >= 0) & (order != order[after])
+    sharp = inside & (opening < limit)
     is_sharp = np.zeros(2 * m, bool)
-    is_sharp[i] = is_sharp[j] = True
-    apexes, pair_apex = np.unique(vertex[i], return_inverse=True)
+    is_sharp[order[sharp]] = is_sharp[order[after[sharp]]] = True
+    apexes, number = np.unique(vertex[order[sharp]], return_inverse=True)
     angle = np.full(len(apexes), np.inf)
+    np.minimum.at(angle, number, np.degrees(opening[sharp]))
     radius = np.zeros(len(apexes))
-    np.minimum.at(angle, pair_apex, opening)
-    np.maximum.at(radius, pair_apex, np.minimum(length[i], length[j]))
+    here = np.flatnonzero(sharp)
+    there, turned = after[here], opening[here]
+    while len(here):
+        reach = np.minimum(length[order[here]], length[order[there]])
+        np.maximum.at(radius, np.searchsorted(apexes, vertex[order[here]]), reach)
+        # Past a shorter segment, its two neighbours run beside each other.
+        onward = turned + opening[there]
+        near = sharp[there] & (onward < limit) & (after[there] != here)
+        here, turned, there = here[near], onward[near], after[there[near]]
     return SharpCorners(apexes, angle, radius, is_sharp.reshape(2, m).T)
 
 
@@ -91,6 +103,36 @@ def _chords(pslg: Pslg) -> np.ndarray:
     """Vectors from each segment's start to its end, then the other way, (2 m, 2)."""
     chord = pslg.points[pslg.segments[:, 1]] - pslg.points[pslg.segments[:, 0]]
     return np.concatenate([chord, -chord])
+
+
+def _headings(
+    pslg: Pslg, chord: np.ndarray, length: np.ndarray, vertex: np.ndarray
+) -> np.ndarray:
+    """Headings of the segments' exact curves at one distance from each vertex, (2 m,).
+
+    They sort the segments around a vertex. Chords do not where curves share a tangent: the longer
+    chord of the flatter curve may pass beyond the shorter chord of the sharper one.
+    """
+    heading = np.arctan2(chord[:, 1], chord[:, 0])
+    m = len(pslg.segments)
+    bent = np.flatnonzero(np.tile(pslg.segment_curve >= 0, 2))
+    if not len(bent):
+        return heading
+    reach = np.full(pslg.n_points, np.inf)
+    np.minimum.at(reach, vertex, 0.5 * length)
+    wanted = reach[vertex[bent]]
+    segment = bent % m
+    start, end = np.where((bent < m)[:, None], pslg.segment_interval[segment],
+                          pslg.segment_interval[segment, ::-1]).T  # fmt: skip
+    share = wanted / length[bent]
+    for _ in range(_RADIUS_STEPS):
+        p = pslg.curves.points(pslg.segment_curve[segment], start + share * (end - start))
+        p -= pslg.points[vertex[bent]]
+        away = np.hypot(p[:, 0], p[:, 1])
+        share *= np.where(away > 0, wanted / np.where(away > 0, away, 1.0), 1.0)
+        share = np.minimum(share, 1.0)
+    heading[bent] = np.arctan2(p[:, 1], p[:, 0])
+    return heading
 
 
 def _tangents(pslg: Pslg, chord: np.ndarray) -> np.ndarray:

@@ -114,7 +114,7 @@ def _recover(work: Workspace) -> list[int] | None:
     while True:
         status, k, met = work.recover()
         if status == CROSSING:
-            return [int(work.pieces.segment[k]), int(work.pieces.segment[met])]
+            return sorted({int(work.pieces.segment[k]), int(work.pieces.segment[met])})
         if status != ON_SEGMENT:
             return None
         segment = int(work.pieces.segment[k])
