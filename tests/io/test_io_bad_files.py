@@ -48,11 +48,24 @@ def test_damaged_bytes_never_raise_anything_else(tmp_path, plate, suffix, option
 
 
 @pytest.mark.parametrize("suffix", list(FORMATS))
-@pytest.mark.parametrize("content", [b"", b"hello\n", b"\x00\xff" * 500, b"<?xml version='1.0'?><a/>"])
+@pytest.mark.parametrize(
+    "content", [b"", b"hello\n", b"\x00\xff" * 500, b"<?xml version='1.0'?><a/>"]
+)
 def test_foreign_files_are_refused(tmp_path, suffix, content):
     path = tmp_path / f"a{suffix}"
     path.write_bytes(content)
     with pytest.raises(cm.FileFormatError, match=path.name):
+        cm.read(path)
+
+
+@pytest.mark.parametrize(
+    ("suffix", "end"), [(".ply", b"end_header"), (".off", b"45 64"), (".bdf", b"GRID")]
+)
+def test_files_on_which_meshio_never_stops_are_refused(tmp_path, plate, suffix, end):
+    path = tmp_path / f"a{suffix}"
+    cm.write(path, plate)
+    path.write_bytes(path.read_bytes().split(end)[0])
+    with pytest.raises(cm.FileFormatError, match="or is cut short"):
         cm.read(path)
 
 
@@ -79,7 +92,9 @@ def test_npz_numbers_are_checked(tmp_path, plate):
     with zipfile.ZipFile(path, "w") as archive:
         for name, data in files.items():
             archive.writestr(name, data)
-    with pytest.raises(cm.FileFormatError, match=r"cells\.triangle must lie in \[0, 45\); got 0 to 10"):
+    with pytest.raises(
+        cm.FileFormatError, match=r"cells\.triangle must lie in \[0, 45\); got 0 to 10"
+    ):
         cm.read(path)
 
 
@@ -134,13 +149,15 @@ def test_bad_paths_to_read(tmp_path):
 
 
 def test_unknown_options_and_arguments(tmp_path, plate):
-    with pytest.raises(cm.InputError, match="a .vtu file has no option 'comprss'; did you mean 'comp"):
+    with pytest.raises(
+        cm.InputError, match=r"a \.vtu file has no option 'comprss'; did you mean 'comp"
+    ):
         cm.write(tmp_path / "a.vtu", plate, comprss=True)
-    with pytest.raises(cm.InputError, match="a .stl file has no option 'binary'; there are none"):
+    with pytest.raises(cm.InputError, match=r"a \.stl file has no option 'binary'; there are none"):
         cm.write(tmp_path / "a.stl", plate, binary=True)
     with pytest.raises(cm.InputError, match="encoding must be one of 'raw', 'base64'; got 'hex'"):
         cm.write(tmp_path / "a.vtu", plate, encoding="hex")
-    with pytest.raises(cm.InputError, match="needs a Mesh.*got Disk"):
+    with pytest.raises(cm.InputError, match=r"needs a Mesh.*got Disk"):
         cm.write(tmp_path / "a.vtu", cm.Disk((0, 0), 1))
     assert not list(tmp_path.iterdir())
 

@@ -50,25 +50,28 @@ class _Foreign:
         Whether it can list embedded points as cells.
     kinds : tuple of str
         What cells it can hold; empty for all.
+    needs : bytes
+        A pattern that the file must contain, or meshio would read on at its end for ever.
     """
 
     module: str
     tags: str
     vertices: bool = False
     kinds: tuple[str, ...] = ()
+    needs: bytes = b""
 
 
 _FORMATS: Mapping[str, _Foreign] = {
     ".vtk": _Foreign("vtk", "arrays", True),
     ".inp": _Foreign("abaqus", "sets"),
     ".mesh": _Foreign("medit", "medit:ref"),
-    ".bdf": _Foreign("nastran", "nastran:ref", True),
+    ".bdf": _Foreign("nastran", "nastran:ref", True, needs=rb"(?s)BEGIN BULK.*^ENDDATA"),
     ".avs": _Foreign("avsucd", "avsucd:material", True),
     ".vol": _Foreign("netgen", "netgen:index", True),
     ".stl": _Foreign("stl", "", kinds=("triangle",)),
     ".obj": _Foreign("obj", "", kinds=("triangle", "quad")),
-    ".off": _Foreign("off", "", kinds=("triangle",)),
-    ".ply": _Foreign("ply", "", kinds=("triangle", "quad")),
+    ".off": _Foreign("off", "", kinds=("triangle",), needs=rb"(?s)\AOFF\s*$.*^\s*\d"),
+    ".ply": _Foreign("ply", "", kinds=("triangle", "quad"), needs=rb"^end_header\s*$"),
     ".msh": _Foreign("gmsh", "gmsh:physical"),
 }
 
@@ -105,7 +108,10 @@ def write(path: Path, mesh: Mesh) -> None:
 
 def read(path: Path) -> Mesh:
     """Read through meshio; the format is chosen by the suffix."""
-    module = importlib.import_module(f"meshio.{_FORMATS[path.suffix.lower()].module}")
+    form = _FORMATS[path.suffix.lower()]
+    if form.needs and not re.search(form.needs, path.read_bytes(), re.MULTILINE):
+        raise FileFormatError(f"{path} is no {path.suffix} file, or is cut short")
+    module = importlib.import_module(f"meshio.{form.module}")
     return from_meshio(_foreign(path, "read", module.read), path)
 
 
