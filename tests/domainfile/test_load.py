@@ -210,6 +210,24 @@ def test_sizes_are_errors_at_their_place(tmp_path: Path) -> None:
         file.generate()
 
 
+def test_errors_of_the_evaluation_have_a_place(tmp_path: Path) -> None:
+    text = """\
+    csgmesh: 1
+    shapes:
+      star: {polygon: [[0, 0], [1, 1], [1, 0], [0, 1]]}
+      part: {union: [star, {disk: {center: [5, 5], radius: 1}}]}
+    domain: part
+    """
+    with pytest.raises(cm.DomainFileError, match=r":3:3: polygon .* crosses or overlaps itself"):
+        loaded(tmp_path, text).generate()
+    text = """\
+    csgmesh: 1
+    domain: {difference: [&d {disk: {center: [0, 0], radius: 1}}, *d]}
+    """
+    with pytest.raises(cm.EmptyDomainError, match=r":2:1: the domain is empty"):
+        loaded(tmp_path, text).generate()
+
+
 def test_the_limit_on_cells_holds(tmp_path: Path) -> None:
     head = "csgmesh: 1\ndomain: {box: {lo: [0, 0], hi: [1, 1]}}\n"
     greedy = head + "mesh: {size: 0.01, delaunay_refinement: {max_points: 1000000000}}\n"

@@ -58,7 +58,9 @@ def report(error: CsgmeshError, file: Path | None = None) -> None:
         first, *others = str(error).split("\n")
         typer.echo("\n".join([first, *_excerpt(error), *others]), err=True)
     else:
-        typer.echo(f"{file or 'csgmesh'}: {error}", err=True)
+        # Some messages begin with their file:line:column already.
+        is_placed = re.match(r".+?:\d+:\d+: ", str(error))
+        typer.echo(str(error) if is_placed else f"{file or 'csgmesh'}: {error}", err=True)
     limit = re.search(r"\(limit (\w+)\)", str(error))
     if limit is not None:
         typer.echo(f"    raise it by --limit {limit.group(1)}=N", err=True)

@@ -7,6 +7,8 @@ import threading
 from types import TracebackType
 from typing import TYPE_CHECKING
 
+from csgmesh.kernels import must_compile
+
 if TYPE_CHECKING:
     from rich.progress import Progress, TaskID
 
@@ -30,12 +32,11 @@ class TerminalProgress:
         self._timer: threading.Timer | None = None
         self._bar: Progress | None = None
         self._task: TaskID | None = None
+        self._is_compiling = False
         self._closed = False
 
     def __enter__(self) -> TerminalProgress:
         if sys.stderr.isatty():
-            from csgmesh.kernels import must_compile
-
             self._is_compiling = must_compile()
             self._timer = threading.Timer(PATIENCE, self._show)
             self._timer.daemon = True
@@ -61,9 +62,8 @@ class TerminalProgress:
             return
         with self._lock:
             self._stage, self._done, self._total = stage, done, total
-            # Kernels compile at their first call, within the first stage that uses them.
-            if stage != "evaluate" and done > 0:
-                self._is_compiling = False
+            # Each kernel compiles at its first call, so one stage after another may have to.
+            self._is_compiling = self._is_compiling and must_compile()
             self._update()
 
     def _show(self) -> None:
@@ -87,6 +87,7 @@ class TerminalProgress:
     def _update(self) -> None:
         if self._bar is None or self._task is None:
             return
-        stage = COMPILING if self._is_compiling else self._stage
-        total = None if self._is_compiling else self._total or None
-        self._bar.update(self._task, description=stage, completed=self._done, total=total)
+        stage = f"{self._stage}: {COMPILING}" if self._is_compiling else self._stage
+        self._bar.update(
+            self._task, description=stage, completed=self._done, total=self._total or None
+        )

@@ -87,10 +87,10 @@ class Expression:
     --------
     >>> Expression.parse("2*r + 1").evaluate({"r": 0.5})
     2.0
-    >>> Expression.parse("2*radius").evaluate({"radios": 1})
+    >>> Expression.parse("2*width").evaluate({"widht": 1})
     Traceback (most recent call last):
     ...
-    csgmesh.errors.ExpressionError: unknown name 'radius' in '2*radius'; did you mean 'radios'?
+    csgmesh.errors.ExpressionError: unknown name 'width' in '2*width'; did you mean 'widht'?
     """
 
     text: str

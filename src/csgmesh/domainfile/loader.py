@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, fields, replace
 from pathlib import Path
@@ -28,6 +29,7 @@ from csgmesh.domainfile.vocabulary import mesher_classes
 from csgmesh.errors import (
     BudgetError,
     DomainFileError,
+    EvaluationError,
     ExpressionError,
     FileFormatError,
     InputError,
@@ -111,6 +113,10 @@ class DomainFile:
             raise BudgetError(f"{error}; a domain file may {self._allowance}", error.mesh) from None
         except InputError as error:
             raise self._placed(error) from None
+        except EvaluationError as error:
+            line, column = self.document.place(self._domain_path, key=True)
+            place = f"{self.document.file}:{line}:{column}"
+            raise type(error)(f"{place}: {error}") from None
         if mesh.n_cells > self.limits.cells:
             raise BudgetError(
                 f"the mesh has {mesh.n_cells} cells; a domain file may {self._allowance}", mesh
@@ -143,14 +149,25 @@ class DomainFile:
         return replace(mesher, max_points=min(mesher.max_points, most))
 
     def _placed(self, error: InputError) -> DomainFileError:
-        """An error of the pipeline at the size it is about, or else at ``mesh``."""
+        """An error of the pipeline at the size, the option or the shape that it is about."""
         message = str(error)
-        sizes = self.size if isinstance(self.size, Mapping) else {}
+        sizes = self.size if isinstance(self.size, Mapping) else {"": self.size}
         for name, size in sizes.items():
             text = size.expression.text if isinstance(size, ExpressionSize) else name
-            if repr(name) in message or repr(text) in message:
+            if name and (repr(name) in message or repr(text) in message):
                 return self.document.error(message, ("mesh", "size", name), key=True)
-        return self.document.error(message, ("mesh", "size"), key=True)
+        option = re.match(r"(deviation|snap|size)\b", message)
+        if option is not None:
+            return self.document.error(message, ("mesh", option.group()), key=True)
+        for quoted in re.findall(r"'([^']+)'", message):
+            for name in reversed(quoted.split(".")):
+                if self.document.has(("shapes", name)):
+                    return self.document.error(message, ("shapes", name), key=True)
+        return self.document.error(message, self._domain_path, key=True)
+
+    @property
+    def _domain_path(self) -> KeyPath:
+        return ("domain",) if self.document.has(("domain",)) else ("regions",)
 
 
 def load(
@@ -164,7 +181,7 @@ def load(
     Parameters
     ----------
     path : path-like
-        A YAML file; see the guide to domain files.
+        A YAML file.
     parameters : mapping of str to float or str, optional
         Values that replace those of the file's parameters.
     limits : Limits, optional
