@@ -1,4 +1,4 @@
-"""Ways to spoil one entity of a mesh. Each takes a generator and a mesh and returns a wrong mesh."""
+"""Ways to spoil one entity of a mesh: each takes a generator and a mesh and returns a wrong one."""
 
 from __future__ import annotations
 

@@ -48,17 +48,21 @@ def test_edges_of_two_triangles_and_a_quad():
 )
 def test_components_and_holes(without, parts, pieces, holes):
     edges = edges_of(grid(5, without), 36)
-    count, _ = components(edges)
-    closed, euler = closure_counts(edges, np.zeros(edges.n_cells, np.int64), 1)
+    count, component = components(edges)
+    closed, euler = closure_counts(edges, component, np.zeros(edges.n_cells, np.int64), 1)
     assert (count, closed[0], closed[0] - euler[0]) == (parts, pieces, holes)
 
 
-def test_counts_by_group():
+@pytest.mark.parametrize("n_groups", [3, 50])
+def test_counts_by_group(n_groups):
     edges = edges_of(grid(5), 36)
     group = np.zeros(25, np.int64)
-    group[12] = 1
-    closed, euler = closure_counts(edges, group, 3)
-    assert closed.tolist() == [1, 1, 0] and euler.tolist() == [0, 1, 0]
+    group[[6, 12]] = 1  # two that share a vertex
+    same = np.r_[group, -1][edges.left] == np.r_[group, -1][edges.right]
+    count, component = components(edges, same)
+    closed, euler = closure_counts(edges, component, group, n_groups)
+    assert count == 3
+    assert closed[:3].tolist() == [1, 1, 0] and euler[:3].tolist() == [-1, 1, 0]
 
 
 def test_no_cells():

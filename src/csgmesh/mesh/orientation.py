@@ -6,6 +6,8 @@ from fractions import Fraction
 
 import numpy as np
 
+from csgmesh import kernels
+
 #: The filter's bound on the rounding error of the determinant: (3 + 16 eps) eps times the sum of
 #: the products' magnitudes (Shewchuk, 1997); half of numpy's eps is his.
 _EPS = 0.5 * float(np.finfo(float).eps)
@@ -13,6 +15,9 @@ _BOUND = (3.0 + 16.0 * _EPS) * _EPS
 
 #: Below this the products may have underflowed and the bound does not hold.
 _TINY = 1e-290
+
+#: Starting the compiled kernels takes as long as this many fractions.
+_MANY = 20_000
 
 
 def orientations(points: np.ndarray, triples: np.ndarray) -> np.ndarray:
@@ -46,7 +51,11 @@ def orientations(points: np.ndarray, triples: np.ndarray) -> np.ndarray:
     s = np.sign([ax[unsure], by[unsure], ay[unsure], bx[unsure]]).astype(np.int8)
     first, second = s[0] * s[1], s[2] * s[3]
     signs[unsure] = first - second
-    for row in unsure[(first != 0) & (second != 0)].tolist():
+    hard = unsure[(first != 0) & (second != 0)]
+    if len(hard) > _MANY:
+        signs[hard] = kernels.orientations(points, triples[hard])
+        return signs
+    for row in hard.tolist():
         signs[row] = _exact(*points[triples[row]].ravel().tolist())
     return signs
 

@@ -141,7 +141,9 @@ def components(edges: Edges, is_open: np.ndarray | None = None) -> tuple[int, np
     return connected(edges.n_cells, edges.left[passes], edges.right[passes])
 
 
-def closure_counts(edges: Edges, group: np.ndarray, n_groups: int) -> tuple[np.ndarray, np.ndarray]:
+def closure_counts(
+    edges: Edges, component: np.ndarray, group: np.ndarray, n_groups: int
+) -> tuple[np.ndarray, np.ndarray]:
     """Components and Euler characteristic of the closed set that each group of cells covers.
 
     Here cells that share a vertex are connected; components less Euler characteristic are the
@@ -150,6 +152,8 @@ def closure_counts(edges: Edges, group: np.ndarray, n_groups: int) -> tuple[np.n
     Parameters
     ----------
     edges : Edges
+    component : (n_cells,) int64
+        From `components`; each within one group.
     group : (n_cells,) int64
     n_groups : int
 
@@ -157,17 +161,34 @@ def closure_counts(edges: Edges, group: np.ndarray, n_groups: int) -> tuple[np.n
     -------
     components, euler : (n_groups,) int64
     """
-    owner = group[edges.half_edge_cell]
-    keys, corner = np.unique(owner * edges.n_points + edges.half_edges[:, 0], return_inverse=True)
-    _, label = connected(len(keys), corner, corner[_next_half_edge(edges)])
-    of_vertex = keys // max(edges.n_points, 1)
-    _, first = np.unique(label, return_index=True)
+    corner, n_corners = _corners(edges, group, n_groups)
+    # Components of the interior that meet at a vertex are one component of the closed set.
+    at = component[edges.half_edge_cell]
+    seen = np.full(n_corners, -1)
+    seen[corner] = at
+    meets = np.flatnonzero(seen[corner] != at)
+    n = int(component.max()) + 1 if len(component) else 0
+    n_pieces, piece = connected(n, seen[corner[meets]], at[meets])
+    owner = np.zeros(n_pieces, np.int64)
+    owner[piece[component]] = group
+    vertex_group = np.full(n_corners, -1)
+    vertex_group[corner] = group[edges.half_edge_cell]
+    used = np.bincount(vertex_group[vertex_group >= 0], minlength=n_groups)
     left, right = (np.where(side >= 0, np.r_[group, -1][side], -1) for side in edges.sides)
     n_edges = np.bincount(left[left >= 0], minlength=n_groups)
     n_edges += np.bincount(right[(right >= 0) & (right != left)], minlength=n_groups)
-    euler = np.bincount(of_vertex, minlength=n_groups) - n_edges
-    euler += np.bincount(group, minlength=n_groups)
-    return np.bincount(of_vertex[first], minlength=n_groups), euler
+    euler = used - n_edges + np.bincount(group, minlength=n_groups)
+    return np.bincount(owner, minlength=n_groups), euler
+
+
+def _corners(edges: Edges, group: np.ndarray, n_groups: int) -> tuple[np.ndarray, int]:
+    """Number of the pair (group, start vertex) of each half-edge, and a bound on the numbers."""
+    start = edges.half_edges[:, 0]
+    if n_groups * edges.n_points <= 4 * len(start) + 4 * edges.n_points:
+        return group[edges.half_edge_cell] * edges.n_points + start, n_groups * edges.n_points
+    keys = group[edges.half_edge_cell] * edges.n_points + start
+    found, compact = np.unique(keys, return_inverse=True)
+    return compact, len(found)
 
 
 def _half_edges(cells: Mapping[str, np.ndarray]) -> tuple[np.ndarray, np.ndarray, int]:
@@ -178,18 +199,6 @@ def _half_edges(cells: Mapping[str, np.ndarray]) -> tuple[np.ndarray, np.ndarray
         owners.append(np.repeat(np.arange(before, before + len(connectivity)), len(local)))
         before += len(connectivity)
     return np.concatenate(rows), np.concatenate(owners), before
-
-
-def _next_half_edge(edges: Edges) -> np.ndarray:
-    owner = edges.half_edge_cell
-    n = len(owner)
-    follow = np.arange(1, n + 1)
-    is_last = np.ones(n, bool)
-    is_last[:-1] = owner[1:] != owner[:-1]
-    is_first = np.ones(n, bool)
-    is_first[1:] = is_last[:-1]
-    follow[is_last] = np.flatnonzero(is_first)
-    return follow
 
 
 def connected(n: int, a: np.ndarray, b: np.ndarray) -> tuple[int, np.ndarray]:

@@ -184,7 +184,7 @@ def _counts(case: Case, is_open: np.ndarray, group: np.ndarray, n: int) -> Count
     count, component = components(case.edges, is_open)
     owner = np.zeros(count, np.int64)
     owner[component] = group
-    pieces, euler = closure_counts(case.edges, group, n)
+    pieces, euler = closure_counts(case.edges, component, group, n)
     return Counts(np.bincount(owner, minlength=n), pieces - euler, euler)
 
 
