@@ -168,7 +168,7 @@ def test_an_open_region_is_refused() -> None:
 
 
 def test_a_size_is_refused() -> None:
-    with pytest.raises(InputError, match="size=0.1"):
+    with pytest.raises(InputError, match=r"size=0\.1"):
         ConstrainedDelaunay().generate(square(), size=0.1)
 
 

@@ -105,9 +105,7 @@ def _chords(pslg: Pslg) -> np.ndarray:
     return np.concatenate([chord, -chord])
 
 
-def _headings(
-    pslg: Pslg, chord: np.ndarray, length: np.ndarray, vertex: np.ndarray
-) -> np.ndarray:
+def _headings(pslg: Pslg, chord: np.ndarray, length: np.ndarray, vertex: np.ndarray) -> np.ndarray:
     """Headings of the segments' exact curves at one distance from each vertex, (2 m,).
 
     They sort the segments around a vertex. Chords do not where curves share a tangent: the longer
@@ -160,9 +158,7 @@ def _next_around(vertex: np.ndarray) -> np.ndarray:
     return after
 
 
-def _openings(
-    heading: np.ndarray, tangent: np.ndarray, i: np.ndarray, j: np.ndarray
-) -> np.ndarray:
+def _openings(heading: np.ndarray, tangent: np.ndarray, i: np.ndarray, j: np.ndarray) -> np.ndarray:
     """Counter-clockwise angle from i to j between tangents, in radians.
 
     Tangents may agree where chords do not (a cusp), so that of all turns the one next to the

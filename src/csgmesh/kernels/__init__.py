@@ -34,11 +34,12 @@ def _load(name: str) -> ModuleType:
     """Import a kernel module with the cache directory in place, and put the user's back."""
     import numba
 
-    kept = numba.config.CACHE_DIR
+    settings: Any = numba.config
+    kept = settings.CACHE_DIR
     try:
         directory = cache_directory()
         directory.mkdir(parents=True, exist_ok=True)
-        numba.config.CACHE_DIR = str(directory)
+        settings.CACHE_DIR = str(directory)
         return importlib.import_module(f".{name}", __name__)
     except (OSError, RuntimeError) as error:
         warnings.warn(
@@ -51,7 +52,7 @@ def _load(name: str) -> ModuleType:
         pointers.ENTRY["cache"] = False
         return importlib.import_module(f".{name}", __name__)
     finally:
-        numba.config.CACHE_DIR = kept
+        settings.CACHE_DIR = kept
 
 
 def __getattr__(name: str) -> Any:

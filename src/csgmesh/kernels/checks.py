@@ -33,9 +33,7 @@ def _in_circles(points, triangles, others, signs):
         b = 2 * corner[3 * i + 1]
         c = 2 * corner[3 * i + 2]
         d = 2 * other[i]
-        o = incircle(
-            xy[a], xy[a + 1], xy[b], xy[b + 1], xy[c], xy[c + 1], xy[d], xy[d + 1]
-        )
+        o = incircle(xy[a], xy[a + 1], xy[b], xy[b + 1], xy[c], xy[c + 1], xy[d], xy[d + 1])
         sign[i] = 1 if o > 0.0 else (-1 if o < 0.0 else 0)
 
 
@@ -84,6 +82,6 @@ def in_circles(points: np.ndarray, triangles: np.ndarray, others: np.ndarray) ->
 
 def _flat(array: np.ndarray, kind: type) -> np.ndarray:
     """A flat read-only view, whatever the array: the kernels are compiled for one type only."""
-    flat = np.ascontiguousarray(array, kind).reshape(-1).view()
+    flat: np.ndarray = np.ascontiguousarray(array, kind).reshape(-1).view()
     flat.flags.writeable = False
     return flat

@@ -11,19 +11,21 @@ from __future__ import annotations
 
 import operator
 import os
+from typing import Any
 
 import numpy as np
 from llvmlite import ir
-from numba import config, njit, types
-from numba.core import cgutils
+from numba import njit, types
+from numba.core import cgutils, config
 from numba.core.datamodel import models
 from numba.core.typing.templates import AbstractTemplate, infer_global, signature
 from numba.extending import intrinsic, lower_builtin, register_model
 
-DEBUG = bool(config.DISABLE_JIT) or os.environ.get("CSGMESH_KERNEL_DEBUG", "0") == "1"
+JIT_IS_OFF = bool(config.DISABLE_JIT)  # type: ignore[attr-defined]
+DEBUG = JIT_IS_OFF or os.environ.get("CSGMESH_KERNEL_DEBUG", "0") == "1"
 
-ENTRY = {"cache": True, "nogil": True, "error_model": "numpy", "boundscheck": DEBUG}
-HELPER = {"nogil": True, "error_model": "numpy", "boundscheck": DEBUG}
+ENTRY: dict[str, Any] = {"cache": True, "nogil": True, "error_model": "numpy", "boundscheck": DEBUG}
+HELPER: dict[str, Any] = {"nogil": True, "error_model": "numpy", "boundscheck": DEBUG}
 if not DEBUG:
     HELPER |= {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
 
@@ -43,7 +45,8 @@ class Pointer(types.Type):
 @register_model(Pointer)
 class PointerModel(models.PrimitiveModel):
     def __init__(self, manager, pointer):
-        super().__init__(manager, pointer, manager.lookup(pointer.dtype).get_data_type().as_pointer())
+        item = manager.lookup(pointer.dtype).get_data_type()
+        super().__init__(manager, pointer, item.as_pointer())
 
 
 @infer_global(operator.getitem)

@@ -53,7 +53,7 @@ def _numbering(work: Workspace, used: np.ndarray) -> np.ndarray:
     in_order = np.concatenate([used[work.rank], used[n:]])
     position = np.cumsum(in_order) - 1
     number = np.full(work.n_points, -1, np.int64)
-    number[: len(position)][:n] = position[: n][work.order]
+    number[: len(position)][:n] = position[:n][work.order]
     number[n:] = position[n:]
     return number
 

@@ -44,17 +44,16 @@ class DelaunayRefinement:
     Guarantees
     ----------
     Every segment is a union of edges, and each of their vertices lies on the segment's exact curve.
-    No angle is smaller than `min_angle`, except as below. The triangulation is constrained Delaunay,
-    and Delaunay away from exceptions. Edge lengths follow the size where the domain's features do
-    not ask for shorter ones. Regions and names are those of the domain. The same input gives the
-    same bytes.
+    No angle is smaller than `min_angle`, except as below. The triangulation is constrained
+    Delaunay. Edge lengths follow the size where the domain's features do not ask for shorter
+    ones. Regions and names are those of the domain. The same input gives the same bytes.
 
     Exceptions
     ----------
-    Cells with a vertex at the apex of an input angle below 60 degrees, or within its protected shell
-    (see `csgmesh.domain.input_angles`), may have smaller angles: along two segments that leave a
-    vertex at a small angle, new vertices lie on common circles around it, and the edges between them
-    are left alone. Edges a few units in the last place long are not divided.
+    Cells with a vertex at the apex of an input angle below 60 degrees, or within its protected
+    shell (see `csgmesh.domain.input_angles`), may have smaller angles: along two segments that
+    leave a vertex at a small angle, new vertices lie on common circles around it, and the edges
+    between them are left alone. Edges a few units in the last place long are not divided.
 
     Termination
     -----------

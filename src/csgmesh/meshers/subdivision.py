@@ -87,9 +87,7 @@ def subdivide(domain: Pslg, pieces: np.ndarray) -> Subdivision:
     return Subdivision(points, ends, segment, t, share)
 
 
-def points_on(
-    domain: Pslg, segment: np.ndarray, t: np.ndarray, share: np.ndarray
-) -> np.ndarray:
+def points_on(domain: Pslg, segment: np.ndarray, t: np.ndarray, share: np.ndarray) -> np.ndarray:
     """Points of segments at parameters t of their exact curves."""
     a, b = (domain.points[domain.segments[segment, k]] for k in (0, 1))
     out = (1.0 - share[:, None]) * a + share[:, None] * b

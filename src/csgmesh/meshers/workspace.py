@@ -137,9 +137,7 @@ class Workspace:
         self.segment, self.interval = self.pieces.segment, self.pieces.interval
         self.recovered = k
 
-    def set_subsegments(
-        self, ends: np.ndarray, segment: np.ndarray, interval: np.ndarray
-    ) -> None:
+    def set_subsegments(self, ends: np.ndarray, segment: np.ndarray, interval: np.ndarray) -> None:
         """Take over refined subsegments; `ends` counts vertices as the kernels do."""
         self.ends = ends
         self.segment, self.interval = segment, interval

@@ -114,9 +114,7 @@ def evaluate(source: Source, points: np.ndarray) -> np.ndarray:
     wrong = np.flatnonzero(~(np.isfinite(value) & (value > 0)))
     if len(wrong):
         where = ", ".join(f"{c:.6g}" for c in points[wrong[0]])
-        raise SizeError(
-            f"a size must be positive and finite; got {value[wrong[0]]:g} at ({where})"
-        )
+        raise SizeError(f"a size must be positive and finite; got {value[wrong[0]]:g} at ({where})")
     return value
 
 
