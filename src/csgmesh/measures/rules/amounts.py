@@ -47,7 +47,8 @@ def _bulges(case: Case) -> np.ndarray:
     lo, hi = case.mesh.points.min(axis=0), case.mesh.points.max(axis=0)
     origin = 0.5 * (lo + hi)
     curves = matching.track.curves
-    term = curves.area_terms(matching.curve[at], *matching.interval[at].T, origin=origin)
+    start, end = matching.interval[at].T
+    term = curves.area_terms(matching.curve[at], start, end, origin=origin)
     a, b = (case.mesh.points[case.facets[at, k]] - origin for k in (0, 1))
     term -= 0.5 * (a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0])
     n = len(case.mesh.region_names)
