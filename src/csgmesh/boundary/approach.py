@@ -137,7 +137,7 @@ def _polish(
     cell = np.floor(point / (snap / 2)).astype(np.int64)
     order = np.lexsort((~crossed, cell[:, 1], cell[:, 0], rows[:, 1], rows[:, 0]))
     key = np.column_stack([rows, cell])[order]
-    first = order[np.r_[True, (key[1:] != key[:-1]).any(1)]]
+    first = order[np.r_[True, (key[1:] != key[:-1]).any(1)][: len(order)]]
     return rows[first], best[first]
 
 

@@ -191,7 +191,7 @@ def _cut(
     piece, t, at = piece[order], t[order], at[order]
     # Within a run of the same vertex keep the first, but let a piece's own ends have the say.
     same = (piece[1:] == piece[:-1]) & (at[1:] == at[:-1])
-    keep = np.r_[True, ~same]
+    keep = np.r_[True, ~same][: len(at)]
     piece, t, at = piece[keep], t[keep], at[keep]
     whole = np.flatnonzero(piece[1:] == piece[:-1])
     edges = _Edges(piece[whole], at[whole], at[whole + 1], t[whole], t[whole + 1])

@@ -64,7 +64,7 @@ def chains(
     left, right = region[face[0::2]], region[face[1::2]]
     parent_leaf = arrangement.pieces.leaf[arrangement.parent_piece]
     embedded = np.zeros(len(left), bool)
-    embedded[arrangement.parent_edge[parent_leaf >= len(program.leaves)]] = True
+    embedded[arrangement.parent_edge[parent_leaf > len(program.leaves)]] = True
     kept = np.flatnonzero((left != right) | (embedded & (left >= 0)))
     if not (region >= 0).any():
         raise EmptyDomainError(_nothing_left(program))
@@ -76,12 +76,13 @@ def chains(
 
 
 def part_names(program: Program) -> tuple[np.ndarray, list[str]]:
-    """Where each leaf's part names start, (n_leaves + n_paths + 1,), and all of them."""
+    """Where the names of each leaf, of the frame and of each path start, and all of them."""
     names: list[str] = []
     start = [0]
     for leaf in program.leaves:
         names.extend(leaf.names)
         start.append(len(names))
+    start.append(len(names))
     for name, _ in program.paths:
         names.append(name)
         start.append(len(names))

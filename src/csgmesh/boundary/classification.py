@@ -39,6 +39,7 @@ def face_regions(
     region = np.full(n_faces, -1)
     for number, (_, code) in enumerate(program.regions):
         region[membership.evaluate(code)] = number
+    region[~membership.in_frame()] = -1
     return region[dual.position]
 
 
@@ -54,16 +55,16 @@ class _Membership:
         n_faces: int,
     ) -> None:
         self.n_faces = n_faces
-        self.n_leaves = len(program.leaves)
+        self.frame_leaf = len(program.leaves)
         leaf, place, winding = self._windings(arrangement, dual, left)
         self._refuse_crossing(program, arrangement, dual, leaf, place, winding, left)
-        odd = np.array([leaf.primitive.fill == "evenodd" for leaf in program.leaves], bool)
+        odd = np.array([leaf.primitive.fill == "evenodd" for leaf in program.leaves] + [False])
         inside = np.where(odd[leaf], winding % 2 != 0, winding != 0) if len(leaf) else winding != 0
         new = np.r_[True, leaf[1:] != leaf[:-1]] if len(leaf) else np.zeros(0, bool)
         before = np.r_[False, inside[:-1]] if len(leaf) else inside
         flips = inside != np.where(new, False, before)
         self.flip_place = place[flips]
-        self.flip_start = np.searchsorted(leaf[flips], np.arange(self.n_leaves + 1))
+        self.flip_start = np.searchsorted(leaf[flips], np.arange(self.frame_leaf + 2))
 
     def _windings(
         self, arrangement: Arrangement, dual: Dual, left: np.ndarray
@@ -75,7 +76,7 @@ class _Membership:
         row = np.repeat(np.arange(len(dual.edge)), count)
         offset = np.arange(len(row)) - np.repeat(np.cumsum(count) - count, count)
         parent = start[dual.edge[row]] + offset
-        keep = parent_leaf[parent] < self.n_leaves
+        keep = parent_leaf[parent] <= self.frame_leaf
         row, parent = row[keep], parent[keep]
         child = dual.child[row]
         entering = np.where(left[dual.edge[row]] == child, 1, -1)
@@ -101,7 +102,7 @@ class _Membership:
         winding: np.ndarray,
         left: np.ndarray,
     ) -> None:
-        simple = np.array([getattr(leaf.primitive, "simple", False) for leaf in program.leaves])
+        simple = np.array([leaf.primitive.simple for leaf in program.leaves] + [False])
         if not len(leaf) or not simple.any():
             return
         wrong = np.flatnonzero(simple[leaf] & ((winding < 0) | (winding > 1)))
@@ -119,6 +120,12 @@ class _Membership:
             f"({where[0]:.6g}, {where[1]:.6g}): the boundary of a polygon must not; use an Outline, "
             "whose contours may cross"
         )
+
+    def in_frame(self) -> np.ndarray:
+        """Faces within the working frame; all of them where no frame was needed."""
+        if self.flip_start[-1] == self.flip_start[-2]:
+            return np.ones(self.n_faces, bool)
+        return self._operand(self.frame_leaf)
 
     def evaluate(self, code: Code) -> np.ndarray:
         """Faces that a boolean expression covers, (n_faces,) bool in preorder."""

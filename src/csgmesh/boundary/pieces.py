@@ -65,7 +65,7 @@ class Pieces:
     forward : (k,) int64
         +1 if the leaf's interior is on the left along increasing parameter, else -1.
     leaf : (k,) int64
-        Leaf number; embedded paths count on behind the leaves.
+        Leaf number; the frame and the embedded paths count on behind the leaves.
     part : (k,) int64
         Part of the leaf, or `FRAME`.
     extent : (n_curves,) float64
@@ -134,10 +134,18 @@ def gather(program: Program, frame: Frame) -> Pieces:
         leaf_of.append(np.full(len(curves), number))
         part_of.append(part)
         extents.append(np.full(len(curves), extent))
+    n_leaves = len(program.leaves)
+    if any(map(_is_half_space, program.leaves)):
+        # A half-space is cut off at the frame, so beyond it the tree would be misread.
+        start = _corners(frame)
+        tables.append(Curves.lines(start, np.roll(start, -1, axis=0)))
+        leaf_of.append(np.full(4, n_leaves))
+        part_of.append(np.full(4, FRAME))
+        extents.append(np.full(4, frame.diagonal))
     for number, (_, points) in enumerate(program.paths):
         points = np.asarray(points, float)
         tables.append(Curves.lines(points[:-1], points[1:]))
-        leaf_of.append(np.full(len(points) - 1, len(program.leaves) + number))
+        leaf_of.append(np.full(len(points) - 1, n_leaves + 1 + number))
         part_of.append(np.zeros(len(points) - 1, np.int64))
         extents.append(np.full(len(points) - 1, frame.diagonal))
     none = np.zeros(0, np.int64)
@@ -184,8 +192,7 @@ def _meeting_points(planes: list[tuple[np.ndarray, np.ndarray]]) -> np.ndarray:
 def _clipped_half_space(leaf: Leaf, frame: Frame) -> tuple[Curves, np.ndarray]:
     """The frame's part in the half-space: a closed polygon whose only real side is the line."""
     point, normal = half_space(leaf)
-    (x0, y0), (x1, y1) = frame.lo, frame.hi
-    corners = np.array([[x0, y0], [x1, y0], [x1, y1], [x0, y1]])
+    corners = _corners(frame)
     depth = (corners - point) @ normal
     polygon: list[np.ndarray] = []
     on_line: list[bool] = []
@@ -203,6 +210,11 @@ def _clipped_half_space(leaf: Leaf, frame: Frame) -> tuple[Curves, np.ndarray]:
     line = np.array(on_line)
     part = np.where(line & np.roll(line, -1), 0, FRAME)
     return Curves.lines(start, np.roll(start, -1, axis=0)), part
+
+
+def _corners(frame: Frame) -> np.ndarray:
+    (x0, y0), (x1, y1) = frame.lo, frame.hi
+    return np.array([[x0, y0], [x1, y0], [x1, y1], [x0, y1]])
 
 
 def _joined_rows(curves: Curves, leaf: np.ndarray, part: np.ndarray) -> np.ndarray:
@@ -235,7 +247,7 @@ def _monotone(
     # Cuts a rounding error from an end or from each other would only make slivers.
     width = (hi - lo)[source]
     here = source[1:] == source[:-1]
-    keep = np.r_[True, ~here | (t[1:] - t[:-1] > 1e-12 * width[1:])]
+    keep = np.r_[True, ~here | (t[1:] - t[:-1] > 1e-12 * width[1:])][: len(t)]
     keep |= t == hi[source]
     before_end = np.r_[here & (t[1:] == hi[source[1:]]), False]
     close = np.r_[t[1:] - t[:-1] <= 1e-12 * width[1:], False]

@@ -130,7 +130,7 @@ def _refuse_outside(
 
 def _report(program: Program, arrangement: Arrangement) -> Report:
     merged = arrangement.merged
-    labels = [leaf.label for leaf in program.leaves]
+    labels = [leaf.label for leaf in program.leaves] + ["working frame"]
     labels += [f"embedded path {name!r}" for name, _ in program.paths]
     leaf = arrangement.pieces.leaf
     merges = []

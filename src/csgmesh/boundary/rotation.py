@@ -201,22 +201,48 @@ def _highest_below(
     component, edge, x, y = component[stabbed], edge[stabbed], x[stabbed], y[stabbed]
     height = np.where(x == lo[edge, 0], _left_end(arrangement, edge), _height(arrangement, edge, x))
     below = height <= y
-    component, edge, x, height = (z[below] for z in (component, edge, x, height))
-    # Edges that leave the same vertex are told apart a little further on.
+    component, edge, height = component[below], edge[below], height[below]
     order = np.lexsort((-height, component))
-    component, edge, x, height = (z[order] for z in (component, edge, x, height))
-    new = (component[1:] != component[:-1]) | (height[1:] != height[:-1])
-    run = np.cumsum(np.r_[False, new]) if len(component) else component
-    room = np.full(len(component), np.inf)
-    np.minimum.at(room, run, hi[edge, 0] - x)
-    further = _height(arrangement, edge, x + 0.5 * room[run])
-    order = np.lexsort((-further, -height, component))
     component, edge, height = component[order], edge[order], height[order]
-    first = np.r_[True, component[1:] != component[:-1]] if len(component) else component
-    first = np.flatnonzero(first)
-    tail, head = arrangement.tail[edge[first]], arrangement.head[edge[first]]
+    new = component[1:] != component[:-1]
+    first = np.flatnonzero(np.r_[True, new][: len(component)])
+    best = _settle_heights(arrangement, component, edge, height, first, lo, hi)
+    component, height, edge = component[first], height[first], edge[best]
+    tail, head = arrangement.tail[edge], arrangement.head[edge]
     leftward = arrangement.vertices[tail, 0] > arrangement.vertices[head, 0]
-    return component[first], height[first], 2 * edge[first] + leftward
+    return component, height, 2 * edge + leftward
+
+
+def _settle_heights(
+    arrangement: Arrangement,
+    component: np.ndarray,
+    edge: np.ndarray,
+    height: np.ndarray,
+    first: np.ndarray,
+    lo: np.ndarray,
+    hi: np.ndarray,
+) -> np.ndarray:
+    """The row of the really highest edge of each component, where rounding left several.
+
+    Edges that meet at vertices only keep their order all over the stretch of x they share.
+    """
+    best = first.copy()
+    running = np.arange(len(first))
+    step = 1
+    while len(running):
+        row = first[running] + step
+        inside = row < len(component)
+        running, row = running[inside], row[inside]
+        close = (component[row] == component[first[running]]) & (
+            height[first[running]] - height[row] <= _TIE
+        )
+        running, row = running[close], row[close]
+        a, b = edge[best[running]], edge[row]
+        x = 0.5 * (np.maximum(lo[a, 0], lo[b, 0]) + np.minimum(hi[a, 0], hi[b, 0]))
+        higher = _height(arrangement, b, x) > _height(arrangement, a, x)
+        best[running[higher]] = row[higher]
+        step += 1
+    return best
 
 
 def _left_end(arrangement: Arrangement, edge: np.ndarray) -> np.ndarray:
