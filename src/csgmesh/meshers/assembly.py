@@ -15,7 +15,10 @@ if TYPE_CHECKING:
 
 
 def assemble(work: Workspace, info: Mapping[str, object]) -> Mesh:
-    """The domain's triangles, its facets, and what the domain knows about them."""
+    """The domain's triangles, its facets, and what the domain knows about them.
+
+    Takes the workspace apart, so that it and the mesh are never both in memory.
+    """
     domain = work.domain
     cells, regions, used = _cells(work)
     number = _numbering(work, used)
@@ -44,6 +47,7 @@ def _cells(work: Workspace) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     n = kernels.extract(
         work.origin, work.twin, work.n_triangles, cells.reshape(-1), regions, used.view(np.uint8)
     )
+    work.release()
     return cells[:n], regions[:n], used
 
 

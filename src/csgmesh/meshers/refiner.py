@@ -93,7 +93,7 @@ class Refiner:
         self.count[4] = 0
 
     def publish(self) -> None:
-        """Hand the subsegments back to the workspace."""
+        """Hand the subsegments back to the workspace, and let go of what refinement needed."""
         n = self.n_sub
         segment = self.segment[:n].astype(np.int64)
         work = self.work
@@ -102,6 +102,8 @@ class Refiner:
             np.where(segment < 0, -1 - segment, segment),
             self.interval[: 2 * n].reshape(-1, 2),
         )
+        self.items = self.todo = self.apex_of = np.empty(0, np.int32)
+        self.size = np.empty(0)
 
     def _slice(self) -> int:
         work = self.work
@@ -146,20 +148,20 @@ class Refiner:
         )
 
     def _make_room(self) -> None:
-        """Double whatever is nearly full; the cavity's buffers if nothing is."""
+        """Enlarge whatever is nearly full; the cavity's buffers if nothing is."""
         work = self.work
         cavity = PER_CAVITY * work.work.shape[1]
         points, triangles, subs, todo = (int(k) for k in self.count[:4])
         full = False
         if 2 * (points + 1) > len(work.points):
-            n = 2 * points + 64
+            n = 3 * points // 2 + 256
             work.points = grown(work.points, 2 * n)
             self.apex_of = grown(self.apex_of, 2 * n)
             if self.graded:
                 self.size = grown(self.size, n)
             full = True
         if 4 * (triangles + 2) > len(work.origin):
-            n = 4 * (2 * triangles + 128)
+            n = 4 * (3 * triangles // 2 + 512)
             work.origin, work.twin = grown(work.origin, n), grown(work.twin, n)
             work.sub = grown(work.sub, n)
             full = True
@@ -169,7 +171,7 @@ class Refiner:
             self.segment, self.apex = grown(self.segment, n), grown(self.apex, n)
             full = True
         if int(self.state[1]) + max(cavity, 8) > len(self.items) // 3:
-            self.items = grown(self.items, 2 * len(self.items) + 3 * cavity)
+            self.items = grown(self.items, 3 * (len(self.items) // 2 + cavity))
             full = True
         if todo + max(cavity, 8) > len(self.todo) // 3:
             self.todo = grown(self.todo, 2 * len(self.todo) + 3 * cavity)

@@ -22,10 +22,12 @@ BOTH_APEXES = -2
 
 
 def grown(array: np.ndarray, size: int) -> np.ndarray:
-    """A longer copy of a flat array."""
-    out = np.empty(size, array.dtype)
-    out[: len(array)] = array
-    return out
+    """The same flat array, longer: resized in place, which moves pages instead of copying."""
+    if array.base is not None:
+        array = array.copy()
+    array.resize(size, refcheck=False)
+    return array
+
 
 
 class Workspace:
@@ -81,6 +83,10 @@ class Workspace:
         wide = np.empty((5, 2 * self.work.shape[1]), np.int32)
         wide[:, : self.work.shape[1]] = self.work
         self.work = wide
+
+    def release(self) -> None:
+        """Let go of the triangulation; points and subsegments stay."""
+        self.origin = self.twin = self.sub = np.empty(0, np.int32)
 
     def triangulate(self) -> None:
         """Delaunay triangulation of the points."""
