@@ -19,10 +19,12 @@ def near(value: str, known: Iterable[str]) -> str:
     "there are 'compress', 'encoding'"
     """
     names = list(known)
-    close = difflib.get_close_matches(value, names, n=3, cutoff=0.5)
+    # difflib takes time in proportion to the product of all lengths.
+    close = difflib.get_close_matches(value[:50], names[:1000], n=3, cutoff=0.5)
     if close:
         return f"did you mean {' or '.join(map(repr, close))}?"
-    return f"there are {', '.join(map(repr, names))}" if names else "there are none"
+    listed = ", ".join(map(repr, names[:20])) + (", …" if len(names) > 20 else "")
+    return f"there are {listed}" if names else "there are none"
 
 
 def check_options(given: Iterable[str], known: Iterable[str], where: str) -> None:

@@ -188,7 +188,7 @@ class Expression:
         hint = near(name, [*known, *FUNCTIONS, *CONSTANTS])
         if hint.startswith("did you mean"):
             return f"{message}; {hint}"
-        return f"{message}; {near(name, known[:20])}"
+        return f"{message}; {near(name, known)}"
 
 
 class _Parser:

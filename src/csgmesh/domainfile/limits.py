@@ -33,9 +33,9 @@ class Limits:
     5000000
     """
 
-    file_size: int = 2_000_000
+    file_size: int = 1_000_000
     nesting: int = 50
-    values: int = 500_000
+    values: int = 200_000
     expression_length: int = 1_000
     leaves: int = 20_000
     cells: int = 2_000_000

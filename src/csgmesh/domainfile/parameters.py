@@ -142,11 +142,11 @@ class _Resolution:
             raise self._error(name, error) from None
 
     def _evaluate(self, name: str) -> None:
-        waiting = [name]
+        waiting = {name: None}
         while waiting:
-            current = waiting[-1]
+            current = next(reversed(waiting))
             if current in self.numbers:
-                waiting.pop()
+                del waiting[current]
                 continue
             expression = self.expressions[current]
             missing = [n for n in expression.names if n not in self.numbers]
@@ -156,7 +156,8 @@ class _Resolution:
                 except ExpressionError as error:
                     raise self._error(current, error) from None
             elif missing[0] in waiting:
-                circle = " → ".join([*waiting[waiting.index(missing[0]) :], missing[0]])
+                names = list(waiting)
+                circle = " → ".join([*names[names.index(missing[0]) :], missing[0]])
                 raise self._error(
                     current,
                     ExpressionError(
@@ -165,7 +166,7 @@ class _Resolution:
                     ),
                 )
             else:
-                waiting.append(missing[0])
+                waiting[missing[0]] = None
 
     def _error(self, name: str, error: ExpressionError) -> InputError:
         if name in self.overrides:
