@@ -277,7 +277,8 @@ def test_ctrl_c_ends_it_with_its_code(plate: Path) -> None:
         time.sleep(1.0)
         process.send_signal(signal.SIGINT)
         _, stderr = process.communicate(timeout=60)
-    assert process.returncode == 130
+    # Python itself ends by the signal where it strikes in generated code; a shell says 130 to both.
+    assert process.returncode in (130, -signal.SIGINT)
     assert stderr in ("csgmesh: interrupted\n", "")
     assert not Path("plate.msh").exists()
 
