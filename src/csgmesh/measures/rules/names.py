@@ -7,6 +7,7 @@ import numpy as np
 from csgmesh.measures.matching import segments_at
 from csgmesh.measures.results import Check, Failure, offenders
 from csgmesh.measures.rules.case import Case
+from csgmesh.spatial import Boxes
 
 _NO_DOMAIN = "no domain to compare with"
 
@@ -79,15 +80,15 @@ def check_embedded_points(case: Case) -> Check:
     wanted = np.full(mesh.n_points, theirs[-1])
     failures: list[Failure] = []
     embedded = np.flatnonzero(case.domain.point_marker >= 0)
-    for point in embedded.tolist():
-        gap = np.hypot(*(mesh.points - case.domain.points[point]).T)
-        nearest = int(gap.argmin())
-        if gap[nearest] <= case.tolerance:
-            wanted[nearest] = theirs[case.domain.point_marker[point]]
-        else:
-            names = _joined(case.domain.boundary_names, case.domain.point_marker[point])
-            place = case.domain.points[[point]]
-            failures += offenders(rule, "point", np.array([point]), place, f"{names} is missing")
+    if len(embedded):
+        places = case.domain.points[embedded]
+        boxes = Boxes(places - case.tolerance, places + case.tolerance)
+        point, which = boxes.overlapping(mesh.points, mesh.points).T
+        wanted[point] = theirs[case.domain.point_marker[embedded[which]]]
+        lost = np.setdiff1d(np.arange(len(embedded)), which)
+        failures += offenders(
+            rule, "embedded point", embedded[lost], places[lost], "is|are not in the mesh"
+        )
     wrong = np.flatnonzero(ours != wanted)
     failures += offenders(
         rule, "point", wrong, mesh.points[wrong], "has|have another name than the domain there"
