@@ -14,7 +14,7 @@ from csgmesh.mesh import Mesh
 from csgmesh.meshers.assembly import assemble
 from csgmesh.meshers.constrained_delaunay import triangulated
 from csgmesh.meshers.refiner import Refiner
-from csgmesh.meshers.sizing import OVER_BUDGET, POINTS_PER_AREA, Sizing
+from csgmesh.meshers.sizing import OVER_BUDGET, POINTS_PER_AREA, Sizing, feature_sizes
 from csgmesh.meshers.subdivision import pieces_by_turning
 from csgmesh.meshers.workspace import Progress, Workspace
 from csgmesh.size import ResolvedSize, resolve
@@ -152,8 +152,9 @@ class DelaunayRefinement:
                     f"a size of {uniform:g} asks for about {expected:.2g} points in a domain "
                     f"{domain.diagonal:.3g} across; max_points is {self.max_points}"
                 )
-            refiner.number[4] = uniform**2
-            return refiner.run()
+            if feature_sizes(domain).min() >= uniform:
+                refiner.set_uniform(uniform)
+                return refiner.run()
         return Sizing(refiner, wanted, self.gradation).refine()
 
     @staticmethod

@@ -88,6 +88,10 @@ class Refiner:
             )
         return status != BUDGET
 
+    def set_uniform(self, size: float) -> None:
+        """Want the same edge length everywhere."""
+        self.number[4] = size**2
+
     def look_again(self) -> None:
         """Let the next run test every triangle anew, after sizes have changed."""
         self.count[4] = 0

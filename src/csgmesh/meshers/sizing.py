@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from csgmesh import kernels
+from csgmesh.domain.pslg import Pslg
 from csgmesh.errors import BudgetError
 from csgmesh.meshers.refiner import CIRCLE_SHARE, SEGMENT_SHARE, Refiner
 from csgmesh.size.resolve import ResolvedSize, evaluate
@@ -15,8 +16,18 @@ POINTS_PER_AREA = 2.0 / np.sqrt(3.0)
 OVER_BUDGET = 1.5
 #: Sizes that turn out smaller than expected by more than this share are refined for once more.
 SURPRISE = 0.8
+#: Size at the ends of a segment of the domain, as a share of its length: a short segment, or a
+#: short chord of a sharply curved boundary, is a feature from which sizes grow.
+FEATURE_SHARE = 1.5
 LAST_ROUNDS = 8
 MOST_SWEEPS = 200
+
+
+def feature_sizes(domain: Pslg) -> np.ndarray:
+    """Size that the domain's shortest segment at each of its points asks for, (n,)."""
+    out = np.full(len(domain.points), np.inf)
+    np.minimum.at(out, domain.segments, FEATURE_SHARE * domain.lengths()[:, None])
+    return out
 
 
 class Sizing:
@@ -34,6 +45,7 @@ class Sizing:
         self.known = 0
         domain = refiner.work.domain
         self.largest = domain.diagonal
+        self.feature = feature_sizes(domain)
         refiner.size = np.empty(len(refiner.work.points) // 2)
 
     def refine(self) -> bool:
@@ -137,6 +149,8 @@ class Sizing:
         segment = refiner.segment[:n].astype(np.int64)
         segment = np.where(segment < 0, -1 - segment, segment)
         xy = work.points.reshape(-1, 2)
+        at = work.rank[: len(self.feature)]
+        refiner.size[at] = np.minimum(refiner.size[at], self.feature)
         if self.size is not None:
             marker = work.domain.segment_marker[segment]
             for markers, source in self.size.boundary:
