@@ -164,6 +164,7 @@ class DelaunayRefinement:
     def _info(self, work: Workspace, refiner: Refiner) -> dict[str, object]:
         return {
             "method": "DelaunayRefinement",
+            "min_angle": self.min_angle,
             "options": asdict(self),
             "n_steiner": work.n_points - len(work.domain.points),
             "n_sharp_corners": int((refiner.radius > 0).sum()),
