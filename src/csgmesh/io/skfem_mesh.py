@@ -58,8 +58,8 @@ def to_skfem(mesh: Mesh) -> skfem.Mesh:
     import skfem
 
     kind = kinds[0]
-    rows = np.array(mesh.cells[kind].T, np.int32)
-    bare = getattr(skfem, _CLASSES[kind])(np.array(mesh.points.T), rows)
+    rows = np.ascontiguousarray(mesh.cells[kind].T, np.int32)
+    bare = getattr(skfem, _CLASSES[kind])(np.ascontiguousarray(mesh.points.T), rows)
     region = mesh.cell_region[kind]
     subdomains = {
         name: cells.astype(np.int32)
