@@ -34,7 +34,8 @@ def approaches(
     if len(pairs) == 0:
         return pairs.reshape(-1, 2), np.zeros((0, 2))
     row, interval = _subdivide(pieces, pairs, snap)
-    return _polish(pieces, pairs[row], interval, snap)
+    known = _at_common_end(pieces, pairs[row], interval, snap)
+    return _polish(pieces, pairs[row[~known]], interval[~known], snap)
 
 
 def _coincide(pieces: Pieces, pairs: np.ndarray, snap: float) -> np.ndarray:
@@ -120,6 +121,28 @@ def _may_meet(
     return alive
 
 
+def _at_common_end(
+    pieces: Pieces, rows: np.ndarray, interval: np.ndarray, snap: float
+) -> np.ndarray:
+    """Which parameter boxes hold nothing but an end that both pieces have anyway."""
+    local = pieces.local
+    i, j = pieces.source[rows].T
+    out = np.zeros(len(rows), bool)
+    for end_i in (pieces.lo, pieces.hi):
+        for end_j in (pieces.lo, pieces.hi):
+            t, s = end_i[rows[:, 0]], end_j[rows[:, 1]]
+            common = (local.points(i, t) == local.points(j, s)).all(1)
+            common &= (interval[:, 0, 0] <= t) & (t <= interval[:, 0, 1])
+            common &= (interval[:, 1, 0] <= s) & (s <= interval[:, 1, 1])
+            k = np.flatnonzero(common)
+            # Straight to within the snap distance, they meet once unless they run side by side.
+            d_i, d_j = local.derivatives(i[k], t[k]), local.derivatives(j[k], s[k])
+            wide = np.abs(cross(d_i, d_j)) > 1e-3 * np.hypot(*d_i.T) * np.hypot(*d_j.T)
+            size = (interval[k, 0, 1] - interval[k, 0, 0]) * np.hypot(*d_i.T)
+            out[k] |= wide | (size <= 8 * snap)
+    return out
+
+
 def _polish(
     pieces: Pieces, rows: np.ndarray, interval: np.ndarray, snap: float
 ) -> tuple[np.ndarray, np.ndarray]:
@@ -130,8 +153,9 @@ def _polish(
     crossing = _newton_crossing(local, i, j, t.copy(), lo, hi)
     gap = np.hypot(*(local.points(i, crossing[:, 0]) - local.points(j, crossing[:, 1])).T)
     crossed = (gap <= 1e-14) & (np.abs(crossing - t) <= 2 * width).all(1)
-    nearest = _nearest(local, i, j, t.copy(), lo, hi)
-    best = np.where(crossed[:, None], crossing, nearest)
+    best = crossing
+    k = np.flatnonzero(~crossed)
+    best[k] = _nearest(local, i[k], j[k], t[k], lo[k], hi[k])
     # Neighbouring leaves of the subdivision find the same point: keep one of each.
     point = local.points(i, best[:, 0])
     cell = np.floor(point / (snap / 2)).astype(np.int64)

@@ -38,10 +38,21 @@ class Meetings:
 
 
 def candidate_pairs(pieces: Pieces, snap: float) -> np.ndarray:
-    """Pairs of pieces whose boxes come within the snap distance, (k, 2)."""
+    """Pairs of pieces whose boxes come within the snap distance, (k, 2).
+
+    Monotone pieces that follow one another have boxes that share a corner, which both know.
+    """
     a = pieces.local.points(pieces.source, pieces.lo)
     b = pieces.local.points(pieces.source, pieces.hi)
-    return Boxes(np.minimum(a, b) - snap, np.maximum(a, b) + snap).pairs()
+    lo, hi = np.minimum(a, b), np.maximum(a, b)
+    pair = Boxes(lo - snap, hi + snap).pairs()
+    i, j = pair.T
+    common = np.zeros(len(pair), bool)
+    for p in (a, b):
+        for q in (a, b):
+            common |= (p[i] == q[j]).all(1)
+    corner = (np.minimum(hi[i], hi[j]) - np.maximum(lo[i], lo[j]) <= 0).all(1)
+    return pair[~(common & corner)]
 
 
 def meetings(pieces: Pieces, pairs: np.ndarray, snap: float) -> Meetings:

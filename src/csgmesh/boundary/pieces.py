@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from csgmesh.csg.program import Leaf, Program
-from csgmesh.domain.curves import ARC, CUBIC, QUADRATIC, Curves
+from csgmesh.domain.curves import ARC, CUBIC, LINE, QUADRATIC, WIDTH, Curves
 from csgmesh.errors import EmptyDomainError, ShapeError
 from csgmesh.tolerance import SNAP_SHARE, coordinate_ulp
 
@@ -149,7 +149,7 @@ def gather(program: Program, frame: Frame) -> Pieces:
         part_of.append(np.zeros(len(points) - 1, np.int64))
         extents.append(np.full(len(points) - 1, frame.diagonal))
     none = np.zeros(0, np.int64)
-    curves = Curves.concatenate(tables)
+    curves = _straightened(Curves.concatenate(tables))
     leaf = np.concatenate([none, *leaf_of])
     part = np.concatenate([none, *part_of])
     rows = _joined_rows(curves, leaf, part)
@@ -215,6 +215,28 @@ def _clipped_half_space(leaf: Leaf, frame: Frame) -> tuple[Curves, np.ndarray]:
 def _corners(frame: Frame) -> np.ndarray:
     (x0, y0), (x1, y1) = frame.lo, frame.hi
     return np.array([[x0, y0], [x1, y0], [x1, y1], [x0, y1]])
+
+
+def _straightened(curves: Curves) -> Curves:
+    """Bézier curves whose control points stand in line and in order, as lines.
+
+    Fonts have them; their parameter need not even have a speed where they start.
+    """
+    kind, data = curves.kind.copy(), curves.data.copy()
+    for bezier in (QUADRATIC, CUBIC):
+        n = WIDTH[bezier] // 2
+        at = np.flatnonzero(kind == bezier)
+        p = data[at, : 2 * n].reshape(-1, n, 2)
+        chord = (p[:, -1] - p[:, 0])[:, None]
+        step = np.diff(p, axis=1)
+        off = chord[..., 0] * step[..., 1] - chord[..., 1] * step[..., 0]
+        along = (chord * step).sum(2)
+        size = np.finfo(float).eps * (chord * chord).sum(2)
+        flat = at[((np.abs(off) <= size) & (along >= 0)).all(1)]
+        kind[flat] = LINE
+        data[flat, 2:4] = data[flat, 2 * n - 2 : 2 * n]
+        data[flat, 4:] = 0.0
+    return Curves(kind, data, curves.interval)
 
 
 def _joined_rows(curves: Curves, leaf: np.ndarray, part: np.ndarray) -> np.ndarray:
