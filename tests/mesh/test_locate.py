@@ -52,6 +52,27 @@ def test_points_on_edges_are_inside_and_points_beside_are_not():
     assert mesh.locate([above, under]).tolist() == [1, 0]
 
 
+@pytest.mark.parametrize("shift", [0.0, 1e6])
+def test_needles_are_found_as_well_as_others(shift):
+    """A fan of 500 needles, twenty thousand times longer than wide at the thin end."""
+    t = np.linspace(0.3, 0.35, 501)
+    rim = np.stack([np.cos(t), np.sin(t)], axis=1)
+    points = np.concatenate([rim, [[0.0, 0.0]]]) + shift
+    cells = np.stack([np.arange(500), np.arange(1, 501), np.full(500, 501)], axis=1)
+    mesh = Mesh(points, {"triangle": cells})
+    lo, hi = points.min(axis=0), points.max(axis=0)
+    queries = np.concatenate([lo + (hi - lo) * np.random.default_rng(0).random((4000, 2)), rim])
+    triples = np.concatenate([cells[:, [0, 1]], cells[:, [1, 2]], cells[:, [2, 0]]])
+    wanted = np.full(len(queries), -1)
+    for i, q in enumerate(queries):
+        stacked = np.concatenate([points, q[None]])
+        rows = np.column_stack([triples, np.full(len(triples), len(points))])
+        inside = (orientations(stacked, rows) >= 0).reshape(3, -1).all(axis=0)
+        wanted[i] = np.flatnonzero(inside)[0] if inside.any() else -1
+    assert (mesh.locate(queries) == wanted).all()
+    assert (wanted >= 0).sum() > 50
+
+
 def test_holes_and_gaps_are_outside():
     ring = {"quad": [[0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7]]}
     outer = np.array([[-2, -2], [2, -2], [2, 2], [-2, 2]])

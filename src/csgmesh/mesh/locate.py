@@ -1,13 +1,14 @@
 """Finding the cell at a point, exactly.
 
 Triangles are sorted into grids of squares, a grid for each power of two of their extent, so that
-each lies in four squares at most however strongly the mesh is graded. A point looks into one
-square of each grid, and an exact predicate decides.
+each lies in four squares at most however strongly the mesh is graded. A needle, which fills little
+of its box, is drawn into finer squares. A point looks into one square of each grid, and an exact
+predicate decides.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -16,12 +17,19 @@ from numpy.typing import ArrayLike
 from csgmesh.errors import InputError
 from csgmesh.mesh.kinds import KINDS
 from csgmesh.mesh.orientation import orientations
+from csgmesh.mesh.squares import box_squares, needle_squares
 
 #: Points are looked up in batches of this many, which bounds the memory.
 _BATCH = 200_000
 
 #: No grid has more squares along a side: keys must fit into 64 bits.
 _FINEST = 30
+
+#: Candidates of a part of a batch, at most about so many.
+_CANDIDATES = 4_000_000
+
+#: Needles are drawn into squares of their extent divided by a power of two up to this.
+_DIVISIONS = 16
 
 _NEWTON_STEPS = 20
 
@@ -64,40 +72,30 @@ class Locator:
     def of(points: np.ndarray, cells: Mapping[str, np.ndarray]) -> Locator:
         """Build the structure."""
         triangles, owner = _triangulated(points, cells)
-        x, y = (_range(points[:, axis], triangles) for axis in (0, 1))
-        lo, hi = np.stack([x[0], y[0]], axis=1), np.stack([x[1], y[1]], axis=1)
-        finite = np.isfinite(lo).all(axis=1) & np.isfinite(hi).all(axis=1)
-        triangles, owner, lo, hi = triangles[finite], owner[finite], lo[finite], hi[finite]
+        finite = np.isfinite(points).all(axis=1)[triangles].all(axis=1)
+        triangles, owner = triangles[finite], owner[finite]
         if not len(triangles):
             return Locator(points, cells, triangles, owner, np.zeros(2), ())
-        origin = lo.min(axis=0)
-        extent = float((hi.max(axis=0) - origin).max())
-        # frexp gives the power of two just above the triangle's extent.
-        level = np.frexp((hi - lo).max(axis=1))[1]
-        level = np.maximum(level, np.frexp(extent)[1] - _FINEST)
-        grids = tuple(
-            _grid(np.flatnonzero(level == one), lo, hi, origin, extent, float(2.0**one))
-            for one in np.unique(level)[::-1].tolist()
-        )
+        origin = points[triangles].min(axis=(0, 1))
+        grids = _grids(points - origin, triangles)
         return Locator(points, cells, triangles, owner, origin, grids)
 
     def cells_of(self, points: ArrayLike) -> np.ndarray:
         """Lowest number of a cell that contains each point, -1 for none."""
         queries = _queries(points)
-        out = np.full(len(queries), -1)
-        for start in range(0, len(queries), _BATCH):
-            query, triangle = self._hits(queries[start : start + _BATCH])
-            cell = np.full(min(_BATCH, len(queries) - start), np.iinfo(np.int64).max)
+        none = np.iinfo(np.int64).max
+        cell = np.full(len(queries), none)
+        for query, triangle in self._hits(queries):
             np.minimum.at(cell, query, self.triangle_cell[triangle])
-            found = cell < np.iinfo(np.int64).max
-            out[start : start + _BATCH][found] = cell[found]
-        return out
+        return np.where(cell < none, cell, -1)
 
     def all_cells_of(self, points: ArrayLike) -> np.ndarray:
         """All pairs (point, cell) where the closed cell contains the point, (k, 2), sorted."""
-        query, triangle = self._hits(_queries(points))
-        pairs = np.stack([query, self.triangle_cell[triangle]], axis=1)
-        return np.unique(pairs, axis=0) if len(pairs) else pairs
+        pairs = [
+            np.stack([query, self.triangle_cell[triangle]], axis=1)
+            for query, triangle in self._hits(_queries(points))
+        ]
+        return np.unique(np.concatenate([np.zeros((0, 2), np.int64), *pairs]), axis=0)
 
     def interpolate(self, values: ArrayLike, points: ArrayLike) -> np.ndarray:
         """Values at points from values at the corners; NaN outside."""
@@ -120,11 +118,37 @@ class Locator:
             before += len(rows)
         return out.reshape(len(queries), *given.shape[1:])
 
-    def _hits(self, queries: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Pairs of a point and a triangle that contains it."""
-        found = [self._candidates(grid, queries) for grid in self.grids]
-        query = np.concatenate([np.zeros(0, np.int64), *(q for q, _ in found)])
-        triangle = np.concatenate([np.zeros(0, np.int64), *(t for _, t in found)])
+    def _hits(self, queries: np.ndarray) -> Iterator[tuple[np.ndarray, np.ndarray]]:
+        """Pairs of a point and a triangle that contains it, some at a time."""
+        for start in range(0, len(queries), _BATCH):
+            batch = np.arange(start, min(start + _BATCH, len(queries)))
+            looks = [self._look(grid, queries[batch]) for grid in self.grids]
+            total = np.sum([count for _, count in looks], axis=0) if looks else np.zeros(len(batch))
+            part = (np.cumsum(total) // _CANDIDATES).astype(np.int64)
+            for one in np.unique(part).tolist():
+                inside = np.flatnonzero(part == one)
+                pairs = [
+                    _expand(grid, batch[inside], first[inside], count[inside])
+                    for grid, (first, count) in zip(self.grids, looks, strict=True)
+                ]
+                query = np.concatenate([np.zeros(0, np.int64), *(q for q, _ in pairs)])
+                triangle = np.concatenate([np.zeros(0, np.int64), *(t for _, t in pairs)])
+                yield self._containing(queries, query, triangle)
+
+    def _look(self, grid: _Grid, queries: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """First triangle in each point's square of a grid, and how many there are."""
+        with np.errstate(invalid="ignore"):
+            square = np.floor((queries - self.lo) / grid.square)
+            near = ((square >= 0) & (square < grid.n_rows)).all(axis=1)
+        square = np.where(near[:, None], square, -1).astype(np.int64)
+        key = square[:, 0] * grid.n_rows + square[:, 1]
+        first = np.searchsorted(grid.keys, key, side="left")
+        return first, np.searchsorted(grid.keys, key, side="right") - first
+
+    def _containing(
+        self, queries: np.ndarray, query: np.ndarray, triangle: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Those of the pairs where the triangle contains the point."""
         for axis in (0, 1):
             # Half of the candidates fall to their boxes, which are cheaper than the predicate.
             low, high = _range(self.points[:, axis], self.triangles[triangle])
@@ -139,18 +163,22 @@ class Locator:
             query, triangle = query[keep], triangle[keep]
         return query, triangle
 
-    def _candidates(self, grid: _Grid, queries: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        with np.errstate(invalid="ignore"):
-            square = np.floor((queries - self.lo) / grid.square)
-            near = ((square >= 0) & (square < grid.n_rows)).all(axis=1)
-        at = np.flatnonzero(near)
-        square = square[at].astype(np.int64)
-        key = square[:, 0] * grid.n_rows + square[:, 1]
-        first = np.searchsorted(grid.keys, key, side="left")
-        count = np.searchsorted(grid.keys, key, side="right") - first
-        query = np.repeat(at, count)
-        within = np.arange(len(query)) - np.repeat(np.cumsum(count) - count, count)
-        return query, grid.triangle[np.repeat(first, count) + within]
+
+def _expand(
+    grid: _Grid, query: np.ndarray, first: np.ndarray, count: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    within = np.arange(int(count.sum())) - np.repeat(np.cumsum(count) - count, count)
+    return np.repeat(query, count), grid.triangle[np.repeat(first, count) + within]
+
+
+def _divisions(points: np.ndarray, triangles: np.ndarray, extent: np.ndarray) -> np.ndarray:
+    """Powers of two by which the squares of needles are finer than their extent, 0 for others."""
+    a, b, c = (points[triangles[:, k]] for k in range(3))
+    width = np.abs(_cross(b - a, c - a)) / np.maximum(extent.max(axis=1), np.finfo(float).tiny)
+    with np.errstate(divide="ignore", over="ignore"):
+        slenderness = extent.max(axis=1) / width / 4
+    finest = np.log2(_DIVISIONS)
+    return np.floor(np.log2(np.clip(slenderness, 1.0, _DIVISIONS))).clip(0, finest).astype(np.int64)
 
 
 def _range(x: np.ndarray, triangles: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -191,26 +219,33 @@ def _cut_quads(points: np.ndarray, quads: np.ndarray) -> np.ndarray:
     return np.where(fits, first, second)
 
 
-def _grid(
-    chosen: np.ndarray,
-    lo: np.ndarray,
-    hi: np.ndarray,
-    origin: np.ndarray,
-    extent: float,
-    square: float,
-) -> _Grid:
-    n_rows = int(extent / square) + 1
-    low = np.floor((lo[chosen] - origin) / square).astype(np.int64)
-    high = np.floor((hi[chosen] - origin) / square).astype(np.int64)
-    keys, triangles = [], []
-    for dx in (0, 1):
-        for dy in (0, 1):
-            fits = (low[:, 0] + dx <= high[:, 0]) & (low[:, 1] + dy <= high[:, 1])
-            keys.append((low[fits, 0] + dx) * n_rows + low[fits, 1] + dy)
-            triangles.append(chosen[fits])
-    key, triangle = np.concatenate(keys), np.concatenate(triangles)
-    order = np.argsort(key, kind="stable")
-    return _Grid(square, n_rows, key[order], triangle[order])
+def _grids(points: np.ndarray, triangles: np.ndarray) -> tuple[_Grid, ...]:
+    """The grids of triangles, of which the smallest coordinates are 0."""
+    low, high = (
+        np.stack(ends, axis=1)
+        for ends in zip(*(_range(points[:, axis], triangles) for axis in (0, 1)), strict=True)
+    )
+    extent = float(high.max())
+    division = _divisions(points, triangles, high - low)
+    # frexp gives the power of two just above the triangle's extent.
+    level = np.frexp((high - low).max(axis=1))[1] - division
+    level = np.maximum(level, np.frexp(extent)[1] - _FINEST)
+    grids = []
+    for one in np.unique(level)[::-1].tolist():
+        square = float(2.0**one)
+        for is_needle in (False, True):
+            chosen = np.flatnonzero((level == one) & ((division > 0) == is_needle))
+            if not len(chosen):
+                continue
+            if is_needle:
+                which, x, y = needle_squares(points[triangles[chosen]] / square)
+            else:
+                which, x, y = box_squares(low[chosen] / square, high[chosen] / square)
+            n_rows = int(extent / square) + 1
+            key = x * n_rows + y
+            order = np.argsort(key, kind="stable")
+            grids.append(_Grid(square, n_rows, key[order], chosen[which[order]]))
+    return tuple(grids)
 
 
 def _weights(corners: np.ndarray, points: np.ndarray) -> np.ndarray:
