@@ -10,7 +10,7 @@ flange = cm.intersection(
         cm.HalfSpace((0, 100), (0, 1), name="head"),
     ]
 )
-web = cm.Polygon([(0, 14), (100, 30), (100, 70), (0, 86)], name="web")
+web = cm.Polygon([(6, 15), (100, 30), (100, 70), (6, 85)], name="web")
 boss = cm.Disk((100, 50), 26, name="boss")
 bore = cm.Disk((100, 50), 14, name="bore")
 

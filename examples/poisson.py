@@ -31,4 +31,5 @@ for h in (0.2, 0.1, 0.05, 0.025):
     print(f"h = {h:<6} error {error:.2e}{order}")
     previous = error
 
-plot(basis, u, shading="gouraud", colorbar=True).get_figure().savefig("poisson.png", dpi=150)
+picture = plot(basis, u, shading="gouraud", cmap="viridis", colorbar=True)
+picture.get_figure().savefig("poisson.png", dpi=150)
