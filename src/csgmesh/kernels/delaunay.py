@@ -25,6 +25,7 @@ from .triangulation import (
 )
 
 ORDER = np.int64(16)
+NUMBER_BITS = np.int64(28)
 ZERO = np.int64(0)
 FIRST_SIZE = np.int64(4)
 
@@ -50,10 +51,11 @@ def hilbert(x, y):
 
 @njit(**ENTRY)
 def curve_keys(points, rounds, keys):
-    """keys[i] = (insertion round, place on the Hilbert curve) of points[i] as one integer.
+    """keys[i] = (insertion round, place on the Hilbert curve, i) of points[i] as one integer.
 
-    Rounds are drawn by a fixed xorshift generator: each holds eight times as many points as the
-    one before. `rounds` = 0 puts all into one.
+    Rounds, at most 8, are drawn by a fixed xorshift generator: each holds eight times as many
+    points as the one before. The number i, of 28 bits, makes keys differ: their order, and with it
+    every mesh, does not depend on how they are sorted.
     """
     xy = pointer(points)
     key = pointer(keys)
@@ -82,7 +84,7 @@ def curve_keys(points, rounds, keys):
             level -= 1
             draw >>= np.uint64(3)
         place = hilbert(np.int64((xy[2 * i] - x0) * scale), np.int64((xy[2 * i + 1] - y0) * scale))
-        key[i] = level << 32 | place
+        key[i] = (level << 32 | place) << NUMBER_BITS | i
 
 
 @njit(**HELPER)

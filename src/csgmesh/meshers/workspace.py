@@ -19,6 +19,8 @@ DONE, ROOM, SLICE, BUDGET, DUPLICATE, CROSSING, ON_SEGMENT, COLLINEAR, STUCK, LE
 #: Triangles that a cavity may hold before its buffers have to grow; most hold fewer than ten.
 CAVITY = 512
 BOTH_APEXES = -2
+#: Points of a domain: their numbers share a 64-bit key with their place on a curve.
+MOST_POINTS = 2**28
 
 
 def grown(array: np.ndarray, size: int) -> np.ndarray:
@@ -42,11 +44,14 @@ class Workspace:
         self.pieces = pieces
         self.progress = progress
         n = len(pieces.points)
+        if n > MOST_POINTS:
+            raise MeshingError(f"a domain may have {MOST_POINTS} points; it has {n}")
         keys = np.empty(n, np.int64)
         # A copy: read-only arrays are another type, for which kernels would be compiled again.
         flat = np.array(pieces.points).reshape(-1)
         kernels.curve_keys(flat, min(7, max(n.bit_length() // 3 - 2, 0)), keys)
-        self.order = np.argsort(keys, kind="stable")
+        keys.sort()
+        self.order = keys & (MOST_POINTS - 1)
         self.rank = np.empty(n, np.int32)
         self.rank[self.order] = np.arange(n, dtype=np.int32)
         self.points = flat.reshape(-1, 2)[self.order].reshape(-1)
