@@ -80,7 +80,8 @@ def check(
     ----------
     mesh : Mesh
     reference : Pslg, optional
-        The domain, evaluated anew.
+        The domain, evaluated anew. Its outline may be finer or coarser than that of the mesh, but
+        the shells of its input angles, in which cells are excused, are those of its own segments.
     contains : callable, optional
         Region number of each of (n, 2) points, into ``reference.region_names``, -1 outside:
         100,000 random points are compared with it.
