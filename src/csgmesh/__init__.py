@@ -2,7 +2,7 @@
 
 >>> import csgmesh as cm
 >>> plate = cm.Box((0, 0), (4, 2), name="plate") - cm.Disk((2, 1), 0.5, name="hole")
->>> mesh = cm.generate(plate, cm.DelaunayRefinement(min_angle=30), size={"hole": 0.05, "default": 0.2})
+>>> mesh = cm.generate(plate, size={"hole": 0.05, "default": 0.2})
 >>> mesh.names
 ('plate.left', 'plate.right', 'plate.bottom', 'plate.top', 'hole')
 """
@@ -64,7 +64,58 @@ _HOME = {
 
 _MODULE_OF = {name: module for module, names in _HOME.items() for name in names}
 
-__all__ = sorted(_MODULE_OF)  # noqa: PLE0605
+__all__ = [
+    "Box",
+    "BudgetError",
+    "Certificate",
+    "ConstrainedDelaunay",
+    "CsgmeshError",
+    "DelaunayRefinement",
+    "Disk",
+    "DomainFile",
+    "DomainFileError",
+    "Ellipse",
+    "Embed",
+    "EmbeddedPath",
+    "EmbeddedPoints",
+    "EmptyDomainError",
+    "EvaluationError",
+    "FileFormatError",
+    "HalfSpace",
+    "InputError",
+    "Mesh",
+    "MeshingError",
+    "NameLookupError",
+    "Outline",
+    "Polygon",
+    "Primitive",
+    "Pslg",
+    "Quality",
+    "Regions",
+    "RegularPolygon",
+    "Shape",
+    "ShapeError",
+    "SizeError",
+    "SizeField",
+    "Triangle",
+    "UnboundedDomainError",
+    "UniformSize",
+    "check",
+    "difference",
+    "draw",
+    "evaluate",
+    "from_meshio",
+    "generate",
+    "intersection",
+    "load",
+    "quality",
+    "read",
+    "symmetric_difference",
+    "to_meshio",
+    "to_skfem",
+    "union",
+    "write",
+]
 
 if TYPE_CHECKING:
     from csgmesh.boundary import evaluate
@@ -105,7 +156,8 @@ if TYPE_CHECKING:
         UnboundedDomainError,
     )
     from csgmesh.io import from_meshio, read, to_meshio, to_skfem, write
-    from csgmesh.measures import Certificate, Quality, quality
+    from csgmesh.measures.certificate import Certificate
+    from csgmesh.measures.quality import Quality, quality
     from csgmesh.mesh import Mesh
     from csgmesh.meshers import ConstrainedDelaunay, DelaunayRefinement
     from csgmesh.pipeline import check, generate

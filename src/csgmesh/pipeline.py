@@ -43,9 +43,9 @@ def generate(
     mesher : object with ``generate``, optional
         How: `DelaunayRefinement` unless given.
     size : float, mapping, callable or SizeField, optional
-        Wanted edge length in coordinate units: a number; a mapping of names of boundaries or regions
-        to numbers with ``"default"``; a callable ``h(points (n, 2)) -> (n,)``. Without it curvature,
-        feature size and gradation decide.
+        Wanted edge length in coordinate units: a number; a mapping of names of boundaries or
+        regions to numbers with ``"default"``; a callable ``h(points (n, 2)) -> (n,)``. Without it
+        curvature, feature size and gradation decide.
     deviation : float, optional
         Largest distance between a facet and its exact curve; see `evaluate`.
     snap : float, optional

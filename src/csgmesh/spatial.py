@@ -1,4 +1,4 @@
-"""Which boxes overlap, which points are near: the only door to shapely's and scipy's search trees."""
+"""Which boxes overlap, which points are near: the only door to other libraries' search trees."""
 
 from __future__ import annotations
 

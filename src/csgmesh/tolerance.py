@@ -44,5 +44,5 @@ def coordinate_ulp(*arrays: np.ndarray) -> float:
 
 
 def accuracy(share: float, diagonal: float, *arrays: np.ndarray) -> float:
-    """What can be promised: ``share`` of the diagonal, or the rounding of the coordinates if larger."""
+    """What can be promised: `share` of the diagonal, or the coordinates' rounding if larger."""
     return max(share * diagonal, coordinate_ulp(*arrays))

@@ -117,7 +117,7 @@ class _Membership:
         where = arrangement.points[arrangement.tail[(around if len(around) else edges)[0]]]
         raise ShapeError(
             f"{program.leaves[bad].label} crosses or overlaps itself near "
-            f"({where[0]:.6g}, {where[1]:.6g}): the boundary of a polygon must not; use an Outline, "
+            f"({where[0]:.6g}, {where[1]:.6g}): the boundary of a polygon must not; use Outline, "
             "whose contours may cross"
         )
 

@@ -79,9 +79,9 @@ def flatten(
     counts = _chord_counts(arrangement, chains, deviation)
     chain = np.repeat(np.arange(len(counts)), counts)
     step = np.arange(len(chain)) - np.repeat(np.cumsum(counts) - counts, counts)
-    share0, share1 = step / counts[chain], (step + 1) / counts[chain]
     t0, t1 = chains.t0[chain], chains.t1[chain]
-    chords = _chords(arrangement, chains, chain, t0 + share0 * (t1 - t0), step + 1 == counts[chain])
+    begin = t0 + step / counts[chain] * (t1 - t0)
+    chords = _chords(arrangement, chains, chain, begin, step + 1 == counts[chain])
     suspects = _suspect_chains(arrangement, chains, snap)
     if len(suspects) == 0:
         return chords
@@ -159,10 +159,14 @@ def _suspect_chains(arrangement: Arrangement, chains: Chains, snap: float) -> np
     pieces = arrangement.pieces
     interval = np.column_stack([chains.t0, chains.t1])
     local = pieces.local[chains.source]
+    bent = np.flatnonzero(local.kind != LINE)
+    if len(bent) == 0:
+        return np.zeros((0, 2), np.int64)
     lo, hi = Curves(local.kind, local.data, interval).bounds()
-    pair = Boxes(lo - snap, hi + snap).pairs()
-    bent = local.kind != LINE
-    pair = pair[bent[pair].any(1)]
+    found = Boxes(lo, hi).overlapping(lo[bent] - 2 * snap, hi[bent] + 2 * snap)
+    first, second = bent[found[:, 0]], found[:, 1]
+    twice = (local.kind[second] != LINE) & (second <= first)
+    pair = np.sort(np.column_stack([first, second])[~twice], axis=1)
     # A cubic may come near itself; lines, arcs and quadratics are convex.
     own = np.flatnonzero(local.kind == CUBIC)
     return np.concatenate([pair, np.column_stack([own, own])])

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import cast
 
 import numpy as np
 
+from csgmesh.csg.primitives.half_space import HalfSpace
 from csgmesh.csg.program import Leaf, Program
 from csgmesh.domain.curves import ARC, CUBIC, LINE, QUADRATIC, WIDTH, Curves
 from csgmesh.errors import EmptyDomainError, ShapeError
@@ -47,7 +49,7 @@ class Frame:
     def to_local(self, curves: Curves) -> Curves:
         """The curves in local coordinates."""
         shifted = curves.transformed(np.eye(2), -self.centre)
-        return shifted.transformed(np.eye(2) / self.scale, np.zeros(2))
+        return Curves(shifted.kind, shifted.data / self.scale, shifted.interval)
 
 
 @dataclass(frozen=True, eq=False)
@@ -150,9 +152,9 @@ def gather(program: Program, frame: Frame) -> Pieces:
         extents.append(np.full(len(points) - 1, frame.diagonal))
     none = np.zeros(0, np.int64)
     curves = _straightened(Curves.concatenate(tables))
-    leaf = np.concatenate([none, *leaf_of])
-    part = np.concatenate([none, *part_of])
-    rows = _joined_rows(curves, leaf, part)
+    leaves = np.concatenate([none, *leaf_of])
+    parts = np.concatenate([none, *part_of])
+    rows = _joined_rows(curves, leaves, parts)
     first = rows[:, 0]
     joined = Curves(
         curves.kind[first],
@@ -160,13 +162,13 @@ def gather(program: Program, frame: Frame) -> Pieces:
         np.column_stack([curves.interval[first, 0], curves.interval[rows[:, 1], 1]]),
     )
     return _monotone(
-        joined, frame, leaf[first], part[first], np.concatenate([np.zeros(0), *extents])[first]
+        joined, frame, leaves[first], parts[first], np.concatenate([np.zeros(0), *extents])[first]
     )
 
 
 def half_space(leaf: Leaf) -> tuple[np.ndarray, np.ndarray]:
     """A point on the boundary and the unit outward normal, in user coordinates."""
-    primitive = leaf.primitive
+    primitive = cast(HalfSpace, leaf.primitive)
     matrix, offset = np.asarray(leaf.matrix, float), np.asarray(leaf.offset, float)
     point = matrix @ np.asarray(primitive.point, float) + offset
     normal = np.linalg.solve(matrix.T, np.asarray(primitive.normal, float))
@@ -260,10 +262,28 @@ def _monotone(
     curves: Curves, frame: Frame, leaf: np.ndarray, part: np.ndarray, extent: np.ndarray
 ) -> Pieces:
     lo, hi = np.sort(curves.interval, axis=1).T
+    bent = np.flatnonzero(curves.kind != LINE)
+    at, start, end = _cut_where_turning(curves, lo, hi, bent)
+    straight = np.flatnonzero(curves.kind == LINE)
+    source = np.concatenate([straight, at])
+    order = np.argsort(source, kind="stable")
+    source = source[order]
+    start = np.concatenate([lo[straight], start])[order]
+    end = np.concatenate([hi[straight], end])[order]
+    forward = np.where(curves.interval[:, 1] > curves.interval[:, 0], 1, -1)
+    return Pieces(
+        curves, frame.to_local(curves), source, start, end, forward[source], leaf[source],
+        part[source], extent,
+    )  # fmt: skip
+
+
+def _cut_where_turning(
+    curves: Curves, lo: np.ndarray, hi: np.ndarray, bent: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Curve, start and end of the monotone pieces of bent curves."""
     owner, cut = _turning_parameters(curves, lo, hi)
-    everyone = np.arange(len(curves))
-    source = np.concatenate([everyone, everyone, owner])
-    t = np.concatenate([lo, hi, cut])
+    source = np.concatenate([bent, bent, owner])
+    t = np.concatenate([lo[bent], hi[bent], cut])
     order = np.lexsort((t, source))
     source, t = source[order], t[order]
     # Cuts a rounding error from an end or from each other would only make slivers.
@@ -271,17 +291,12 @@ def _monotone(
     here = source[1:] == source[:-1]
     keep = np.r_[True, ~here | (t[1:] - t[:-1] > 1e-12 * width[1:])][: len(t)]
     keep |= t == hi[source]
-    before_end = np.r_[here & (t[1:] == hi[source[1:]]), False]
-    close = np.r_[t[1:] - t[:-1] <= 1e-12 * width[1:], False]
+    before_end = np.r_[here & (t[1:] == hi[source[1:]]), False][: len(t)]
+    close = np.r_[t[1:] - t[:-1] <= 1e-12 * width[1:], False][: len(t)]
     keep &= ~(before_end & close & (t > lo[source]))
     source, t = source[keep], t[keep]
     pair = np.flatnonzero((source[1:] == source[:-1]) & (t[1:] > t[:-1]))
-    at = source[pair]
-    forward = np.where(curves.interval[:, 1] > curves.interval[:, 0], 1, -1)
-    return Pieces(
-        curves, frame.to_local(curves), at, t[pair], t[pair + 1], forward[at], leaf[at], part[at],
-        extent,
-    )  # fmt: skip
+    return source[pair], t[pair], t[pair + 1]
 
 
 def _turning_parameters(

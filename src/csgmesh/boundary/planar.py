@@ -3,8 +3,8 @@
 1. Every leaf gives its boundary as monotone curve pieces (`pieces`).
 2. Pieces are cut where they meet, coincident ones become one (`intersections`, `arrangement`).
 3. The order of edges around vertices gives the faces (`rotation`).
-4. Winding numbers say which leaves cover a face, the tree says which region it is (`classification`).
-5. Edges between different regions become chains of one curve (`chains`), then chords (`flattening`).
+4. Winding numbers say which leaves cover a face, the tree which region it is (`classification`).
+5. Edges between different regions become chains of a curve (`chains`), then chords (`flattening`).
 
 Topology is settled in step 3, before anything is flattened: a sliver thinner than the chord error
 is as safe as a square.

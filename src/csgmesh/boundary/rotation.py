@@ -1,4 +1,4 @@
-"""The counterclockwise order of curved edges around each vertex, and which face holds which component.
+"""The order of curved edges around each vertex, and which face holds which component.
 
 Edges leave a vertex in the order of their tangents; those with nearly the same tangent in the
 order they have at a common distance from the vertex, which is their order all the way since they
@@ -27,22 +27,32 @@ def half_edge_tails(arrangement: Arrangement) -> np.ndarray:
 def counterclockwise(arrangement: Arrangement, snap: float) -> np.ndarray:
     """All half-edges, grouped by the vertex they leave, counterclockwise within a group."""
     tail = half_edge_tails(arrangement)
-    angle = np.arctan2(*_directions(arrangement, snap).T[::-1])
-    order = np.lexsort((angle, tail))
+    everyone = np.argsort(tail, kind="stable")
+    # Two half-edges are in order whichever comes first; only busier vertices need directions.
+    busy = np.bincount(tail, minlength=1)[tail[everyone]] > 2
+    order = everyone[busy]
+    if len(order) == 0:
+        return everyone
+    direction = _directions(arrangement, snap)[order]
+    angle = np.arctan2(direction[:, 1], direction[:, 0])
+    vertex = tail[order]
+    by_angle = np.lexsort((angle, vertex))
+    order, vertex, a = order[by_angle], vertex[by_angle], angle[by_angle]
     # Cut the circle of directions at its widest gap, so that no tie straddles the cut.
-    vertex, a = tail[order], angle[order]
-    first = np.r_[True, vertex[1:] != vertex[:-1]] if len(order) else np.zeros(0, bool)
+    first = np.r_[True, vertex[1:] != vertex[:-1]]
     start = np.flatnonzero(first)
     group = np.cumsum(first) - 1
     previous = np.roll(a, 1)
-    last = np.r_[start[1:] - 1, len(a) - 1] if len(a) else start
-    previous[start] = a[last] - 2 * np.pi
+    previous[start] = a[np.r_[start[1:] - 1, len(a) - 1]] - 2 * np.pi
     gap = a - previous
-    widest = np.lexsort((-gap, group))[start] if len(a) else start
+    widest = np.lexsort((-gap, group))[start]
     turned = (a - a[widest][group]) % (2 * np.pi)
     turned[widest] = 0.0
     resort = np.lexsort((turned, group))
-    return _settle_ties(arrangement, order[resort], turned[resort], group[resort], snap)
+    everyone[busy] = _settle_ties(
+        arrangement, order[resort], turned[resort], group[resort], snap
+    )
+    return everyone
 
 
 def _settle_ties(

@@ -56,7 +56,7 @@ class Pslg:
     segment_marker : (m,) int64
         Entry of `boundary_names`, each a tuple of all the names of a segment.
     segment_region : (m, 2) int64
-        Regions on the left and right, -1 outside. The domain is on the left of an outer segment, and
+        Regions on the left and right, -1 outside. The domain is on the left of an outer segment,
         the region of lower number on the left of an interface.
     point_marker : (n,) int64
         Entry of `boundary_names` for embedded points, -1 for others.
@@ -166,8 +166,9 @@ class Pslg:
         terms = 0.5 * cross(a, b)
         bent = np.flatnonzero(self.segment_curve >= 0)
         if len(bent):
+            begin, end = self.segment_interval[bent].T
             terms[bent] = self.curves.area_terms(
-                self.segment_curve[bent], *self.segment_interval[bent].T, origin=self._centre()
+                self.segment_curve[bent], begin, end, self._centre()
             )
         return self._sum_sides(terms)
 
@@ -176,7 +177,8 @@ class Pslg:
         out = np.hypot(*(self.points[self.segments[:, 1]] - self.points[self.segments[:, 0]]).T)
         bent = np.flatnonzero(self.segment_curve >= 0)
         if len(bent):
-            out[bent] = self.curves.lengths(self.segment_curve[bent], *self.segment_interval[bent].T)
+            begin, end = self.segment_interval[bent].T
+            out[bent] = self.curves.lengths(self.segment_curve[bent], begin, end)
         return out
 
     def __repr__(self) -> str:
