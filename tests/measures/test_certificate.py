@@ -314,7 +314,7 @@ def test_delaunay_is_told_and_never_fails():
     one = check(Mesh(long, {"triangle": [[0, 1, 2], [0, 2, 3]]}))["Delaunay"]
     other = check(Mesh(long, {"triangle": [[0, 1, 3], [1, 2, 3]]}))["Delaunay"]
     notes = {one.note, other.note}
-    assert notes == {"constrained Delaunay", "1 edges are not Delaunay"}
+    assert notes == {"constrained Delaunay", "1 edge is not Delaunay"}
     assert check(Mesh(SQUARE, {"triangle": [[0, 1, 2], [0, 2, 3]]}))["Delaunay"].note == (
         "constrained Delaunay"
     )

@@ -13,7 +13,7 @@ from csgmesh.spatial import Boxes
 #: Two ends on a curve are the same place if their parameters differ by less than this share of the
 #: curve's extent (so that the two ends of a closed curve stay apart) and their points by less than
 #: a few tolerances.
-_SAME_PARAMETER = 1e-6
+SAME_PARAMETER = 1e-6
 _SAME_PLACE = 8.0
 
 
@@ -304,6 +304,6 @@ def same_place(
     """Whether parameters `t` and `s` mean the same place on curves."""
     extent = np.diff(track.extent[curve], axis=1)[:, 0]
     gap = track.curves.points(curve, t) - track.curves.points(curve, s)
-    return (np.abs(t - s) <= _SAME_PARAMETER * extent) & (
+    return (np.abs(t - s) <= SAME_PARAMETER * extent) & (
         np.hypot(*gap.T) <= _SAME_PLACE * tolerance
     )

@@ -100,7 +100,8 @@ def check_delaunay(case: Case) -> Check:
     inner = ~is_facet & (edges.count == 2)
     # Opposite angles that add up to 180 degrees have opposite cotangents.
     n = int((inner & (cot < -_COCIRCULAR)).sum())
-    note = "constrained Delaunay" if n == 0 else f"{n:,} edges are not Delaunay"
+    told = "1 edge is" if n == 1 else f"{n:,} edges are"
+    note = f"{told} not Delaunay" if n else "constrained Delaunay"
     return Check.of(rule, int(inner.sum()), [], note)
 
 

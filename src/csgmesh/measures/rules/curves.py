@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from csgmesh.measures.matching import Spans, join, ranks, same_place
+from csgmesh.measures.matching import SAME_PARAMETER, Spans, join, ranks, same_place
 from csgmesh.measures.results import Check, Failure, offenders
 from csgmesh.measures.rules.case import Case
 
@@ -96,8 +96,8 @@ def _other_curve(case: Case, at: np.ndarray, slack: np.ndarray) -> list[Failure]
     """Facets whose claimed curve leaves the domain's between the two ends."""
     assert case.mesh.curves is not None
     track = case.matching.track
-    known = case.matching.curve[at] >= 0
-    at, slack = at[known], slack[known]
+    unsure = (case.matching.curve[at] >= 0) & ~_is_same_piece(case, at)
+    at, slack = at[unsure], slack[unsure]
     away = np.zeros(len(at))
     for share in (0.25, 0.5, 0.75):
         t = case.facet_interval[at] @ [1 - share, share]
@@ -115,6 +115,18 @@ def _other_curve(case: Case, at: np.ndarray, slack: np.ndarray) -> list[Failure]
         case.facet_places(wrong),
         "names|name another curve than the domain has there",
     )
+
+
+def _is_same_piece(case: Case, at: np.ndarray) -> np.ndarray:
+    """Facets whose claim is, number by number, what was found: most, and quick to tell."""
+    ours, theirs = case.mesh.curves, case.matching.track
+    assert ours is not None
+    claimed, found = case.facet_curve[at], case.matching.curve[at]
+    same = (ours.kind[claimed] == theirs.curves.kind[found]) & (found >= 0)
+    same &= (ours.data[claimed] == theirs.curves.data[found]).all(axis=1)
+    apart = np.abs(case.facet_interval[at] - case.matching.interval[at]).max(axis=1, initial=0.0)
+    extent = theirs.extent[found, 1] - theirs.extent[found, 0]
+    return same & (apart <= SAME_PARAMETER * extent)
 
 
 def _no_curve(case: Case) -> list[Failure]:
