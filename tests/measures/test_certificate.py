@@ -307,6 +307,8 @@ def test_small_angles_are_refused_but_at_input_angles():
     assert broken(spoiled) == {"smallest angle"}
     assert "below 20°; the first is cell 0 at (0.5, 0.00666667): 2.291°" in str(spoiled)
     assert check(square_mesh(points=thin, cells=cells, info={"min_angle": 1.0})).ok
+    alone = check(square_mesh(points=thin, cells=cells), min_angle=20)["smallest angle"]
+    assert alone.status == "skipped" and "1 cell is below 20°" in alone.note
 
 
 def test_delaunay_is_told_and_never_fails():

@@ -43,6 +43,10 @@ def check_angles(case: Case) -> Check:
     shortest = np.maximum(case.quality.min_edge, np.finfo(float).tiny)
     slack = ANGLE_ROUNDING + np.degrees(coordinate_ulp(case.mesh.points) / shortest)
     low = np.flatnonzero(smallest < bound - slack)
+    if case.domain is None and len(low):
+        told = "1 cell is" if len(low) == 1 else f"{len(low):,} cells are"
+        reason = f"{told} below {bound:g}°; without a domain no input angle can excuse them"
+        return Check.skipped(rule, reason)
     excused = _excused(case, low)
     bad = low[~excused]
     detail = f"{smallest[bad[0]]:.4g}°" if len(bad) else ""
