@@ -303,6 +303,17 @@ def test_a_mesh_tells_how_it_was_made() -> None:
     assert mesh.info["n_steiner"] == mesh.n_points - 4
 
 
-def test_quality_on_a_square_at_a_size() -> None:
-    mesh = DelaunayRefinement().generate(square(), 0.02)
-    assert smallest_angles(mesh).mean() > 45
+@pytest.mark.parametrize("name", ["square", "ell", "disk", "three chords"])
+def test_uniform_meshes_are_nearly_regular(name: str) -> None:
+    mesh = DelaunayRefinement().generate(DOMAINS[name], 0.02)
+    assert_sound(mesh, DOMAINS[name])
+    assert_angles(mesh, DOMAINS[name], 30)
+    assert smallest_angles(mesh).mean() > 57
+
+
+def test_the_lattice_keeps_to_regions_and_interfaces() -> None:
+    domain = disks([(0.5, 0.5, 0.3, 1, 0)], n=5, box=(0, 0, 1, 1))
+    mesh = DelaunayRefinement().generate(domain, 0.03)
+    assert_sound(mesh, domain)
+    assert_angles(mesh, domain, 30)
+    assert_on_curves(mesh, 1e-14)

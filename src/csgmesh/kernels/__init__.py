@@ -21,6 +21,7 @@ _HOME = {
     "curve_keys": "delaunay",
     "recover_segments": "segments",
     "flood_regions": "segments",
+    "fill": "lattice",
     "refine": "refinement",
     "extract": "export",
     "limit_gradation": "gradation",

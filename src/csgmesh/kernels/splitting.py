@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import numpy as np
 from numba import njit
 
 from .aim import (
@@ -37,6 +38,11 @@ from .triangulation import (
     set_subsegment,
     walk,
 )
+
+# What `find_ends` and `open_cavity` may say instead of a half-edge or a number of edges.
+CLEAR = np.int64(-1)
+OCCUPIED = np.int64(-2)
+CANNOT = np.int64(-2)
 
 
 @njit(**HELPER)
@@ -121,7 +127,7 @@ def yield_to(net, subs, aim, h, k, blocking):
 
 
 @njit(**HELPER)
-def halve(net, subs, aim, h, k, a, b, p, t):
+def halve(subs, aim, k, a, b, p, t):
     """Subsegment k from a to b becomes a–p and p–b; returns the number of the second."""
     new = aim.count[C_SUBSEGMENTS]
     aim.count[C_SUBSEGMENTS] = new + 1
@@ -148,36 +154,13 @@ def halve(net, subs, aim, h, k, a, b, p, t):
 
 
 @njit(**HELPER)
-def split(net, subs, aim, q, h, room):
-    """Split the subsegment of half-edge h on its curve. Returns a status."""
+def find_ends(net, a, b, n_ring, x, y):
+    """Places of a and b in the cavity's outline, and what is wrong with the outline.
+
+    The third value is CLEAR; OCCUPIED where (x, y) already is a vertex or a or b is missing; or a
+    half-edge of a subsegment that (x, y) lies beyond.
+    """
     xy = net.xy
-    k = net.sub[h]
-    if net.origin[h] != subs.ends[2 * k]:
-        h = net.twin[h]
-    a = net.origin[h]
-    b = net.origin[following(h)]
-    x, y, t = split_place(xy, subs, k, aim.radius)
-    p = aim.count[C_POINTS]
-    xy[2 * p] = x
-    xy[2 * p + 1] = y
-    clear_subsegment(net, h)
-    if min(squared_length(xy, a, p), squared_length(xy, b, p)) <= aim.number[N_TINY]:
-        return give_up_split(net, subs, aim, h, k)
-    side = orient_point(xy, a, b, x, y)
-    through = h if side == 0.0 else NONE
-    near = h if side >= 0.0 else net.twin[h]
-    start = near & ~3
-    if side != 0.0:
-        if net.origin[start] | net.origin[start + 1] | net.origin[start + 2] >= 0:
-            start = walk(xy, net.origin, net.twin, start, x, y, ONE)
-            if start < 0:
-                return yield_to(net, subs, aim, h, k, -1 - start)
-        if not in_conflict(xy, net.origin, near & ~3, x, y):
-            return give_up_split(net, subs, aim, h, k)
-    n_ring = gather(net, start, through, x, y, room)
-    if n_ring < 0:
-        set_subsegment(net, h, k)
-        return ROOM
     at_a = NONE
     at_b = NONE
     for i in range(n_ring):
@@ -188,13 +171,40 @@ def split(net, subs, aim, q, h, room):
             at_b = i
         if v >= 0:
             if xy[2 * v] == x and xy[2 * v + 1] == y:
-                return give_up_split(net, subs, aim, h, k)
+                return at_a, at_b, OCCUPIED
             w = net.ring_from[i + 1 if i + 1 < n_ring else 0]
             if net.ring_sub[i] >= 0 and w >= 0 and orient_point(xy, v, w, x, y) <= 0.0:
-                return yield_to(net, subs, aim, h, k, net.twin[net.ring[i]])
-    if at_a < 0 or at_b < 0:
-        return give_up_split(net, subs, aim, h, k)
-    aim.count[C_BLOCKED] = 0
+                return at_a, at_b, net.twin[net.ring[i]]
+    return at_a, at_b, OCCUPIED if at_a < 0 or at_b < 0 else CLEAR
+
+
+@njit(**HELPER)
+def open_cavity(net, h, a, b, x, y, room):
+    """Gather the cavity of (x, y), which is to replace subsegment h = a→b, just cleared.
+
+    It starts on the point's side of a–b, which it may cross. Returns the number of outline edges;
+    -1 without room, CANNOT, or -10 - g where subsegment g stands in the way.
+    """
+    side = orient_point(net.xy, a, b, x, y)
+    if side == 0.0:
+        return gather(net, h & ~3, h, x, y, room)
+    near = (h if side > 0.0 else net.twin[h]) & ~3
+    start = near
+    if net.origin[near] | net.origin[near + 1] | net.origin[near + 2] >= 0:
+        start = walk(net.xy, net.origin, net.twin, near, x, y, ONE)
+        if start < 0:
+            return -10 - (-1 - start)
+    if not in_conflict(net.xy, net.origin, near, x, y):
+        return CANNOT
+    return gather(net, start, NONE, x, y, room)
+
+
+@njit(**HELPER)
+def close_cavity(net, subs, aim, q, h, k, at_a, at_b, n_ring, t):
+    """Fan the cavity around the new vertex, with a–p and p–b as subsegments."""
+    a = net.ring_from[at_a]
+    b = net.ring_from[at_b]
+    p = aim.count[C_POINTS]
     right = net.twin[net.twin[h] | 3]
     left = net.twin[h | 3]
     aim.count[C_TRIANGLES] = fan(net, aim.count[C_TRIANGLES], p, n_ring, left)
@@ -202,7 +212,7 @@ def split(net, subs, aim, q, h, room):
     while i != at_b:
         net.twin[net.cavity[i] + 3] = right
         i = i + 1 if i + 1 < n_ring else 0
-    new = halve(net, subs, aim, h, k, a, b, p, t)
+    new = halve(subs, aim, k, a, b, p, t)
     set_subsegment(net, net.cavity[at_a] + 2, k)
     set_subsegment(net, net.cavity[at_b] + 2, new)
     aim.count[C_POINTS] = p + 1
@@ -218,4 +228,37 @@ def split(net, subs, aim, q, h, room):
         elif is_poor(net, aim, o, net.origin[preceding(o)]):
             want_split(net, subs, aim, o)
     queue_fan(net, aim, q, n_ring)
+
+
+@njit(**HELPER)
+def split(net, subs, aim, q, h, room):
+    """Split the subsegment of half-edge h on its curve. Returns a status."""
+    xy = net.xy
+    k = net.sub[h]
+    if net.origin[h] != subs.ends[2 * k]:
+        h = net.twin[h]
+    a = net.origin[h]
+    b = net.origin[following(h)]
+    x, y, t = split_place(xy, subs, k, aim.radius)
+    p = aim.count[C_POINTS]
+    xy[2 * p] = x
+    xy[2 * p + 1] = y
+    clear_subsegment(net, h)
+    if min(squared_length(xy, a, p), squared_length(xy, b, p)) <= aim.number[N_TINY]:
+        return give_up_split(net, subs, aim, h, k)
+    n_ring = open_cavity(net, h, a, b, x, y, room)
+    if n_ring == -1:
+        set_subsegment(net, h, k)
+        return ROOM
+    if n_ring == CANNOT:
+        return give_up_split(net, subs, aim, h, k)
+    if n_ring < 0:
+        return yield_to(net, subs, aim, h, k, -10 - n_ring)
+    at_a, at_b, wrong = find_ends(net, a, b, n_ring, x, y)
+    if wrong == OCCUPIED:
+        return give_up_split(net, subs, aim, h, k)
+    if wrong >= 0:
+        return yield_to(net, subs, aim, h, k, wrong)
+    aim.count[C_BLOCKED] = 0
+    close_cavity(net, subs, aim, q, h, k, at_a, at_b, n_ring, t)
     return DONE

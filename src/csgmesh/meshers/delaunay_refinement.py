@@ -13,6 +13,7 @@ from csgmesh.errors import BudgetError, InputError
 from csgmesh.mesh import Mesh
 from csgmesh.meshers.assembly import assemble
 from csgmesh.meshers.constrained_delaunay import triangulated
+from csgmesh.meshers.lattice import fill_with_lattice
 from csgmesh.meshers.refiner import Refiner
 from csgmesh.meshers.sizing import OVER_BUDGET, POINTS_PER_AREA, Sizing, feature_sizes
 from csgmesh.meshers.subdivision import pieces_by_turning
@@ -125,9 +126,13 @@ class DelaunayRefinement:
         wanted = resolve(size, domain)
         uniform = wanted.uniform if wanted is not None else None
         pieces = pieces_by_turning(domain)
-        if uniform is not None and self._expected(domain, uniform) <= self.max_points:
+        if uniform is None or self._expected(domain, uniform) > self.max_points:
+            work = triangulated(domain, pieces, progress)
+        else:
             pieces = np.maximum(pieces, _pieces_by_size(domain, uniform))
-        work = triangulated(domain, pieces, progress)
+            work = triangulated(domain, pieces, progress)
+            if feature_sizes(domain).min() >= uniform:
+                fill_with_lattice(work, uniform)
         refiner = Refiner(work, self.min_angle, self.max_points)
         try:
             finished = self._refine(refiner, wanted, uniform)

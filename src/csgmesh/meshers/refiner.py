@@ -49,6 +49,7 @@ class Refiner:
         self.interval = work.pieces.interval.reshape(-1).copy()
         self.ends = work.ends
         self.apex, self.apex_of, self.radius = work.sharp()
+        self.apex_of = grown(self.apex_of, len(work.points))
         domain = work.domain
         self.segment_ends = work.rank[domain.segments].reshape(-1)
         self.segment_curve = domain.segment_curve.astype(np.int32)

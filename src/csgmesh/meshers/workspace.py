@@ -31,6 +31,10 @@ def grown(array: np.ndarray, size: int) -> np.ndarray:
     return array
 
 
+def rounds(n: int) -> int:
+    """Rounds in which to insert n points: few points need no more than one."""
+    return min(7, max(n.bit_length() // 3 - 2, 0))
+
 
 class Workspace:
     """Constrained Delaunay triangulation of a domain, in the kernels' arrays.
@@ -49,7 +53,7 @@ class Workspace:
         keys = np.empty(n, np.int64)
         # A copy: read-only arrays are another type, for which kernels would be compiled again.
         flat = np.array(pieces.points).reshape(-1)
-        kernels.curve_keys(flat, min(7, max(n.bit_length() // 3 - 2, 0)), keys)
+        kernels.curve_keys(flat, rounds(n), keys)
         keys.sort()
         self.order = keys & (MOST_POINTS - 1)
         self.rank = np.empty(n, np.int32)
