@@ -9,8 +9,10 @@ path = TextPath((0, 0), "csgmesh", size=10, prop=FontProperties(family="STIXGene
 word = cm.Outline.from_path(path.vertices, path.codes, name="ink")
 low, high = word.bounds()
 page = cm.Box(low - 1, high + 1, name="page")
+print_shop = cm.Regions({"paper": page, "letters": word})
 
-mesh = cm.generate(cm.Regions({"paper": page, "letters": word}), size={"ink": 0.4, "default": 1.5})
+mesh = cm.generate(print_shop, size={"ink": 0.4, "default": 1.5})
 print(mesh)
-print(cm.check(mesh))
+print(cm.check(mesh, print_shop))
+cm.write("glyphs.vtu", mesh)
 cm.draw(mesh, "glyphs.png")

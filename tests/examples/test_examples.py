@@ -1,0 +1,101 @@
+"""Every example runs, passes its own check, draws its picture, and prints the right numbers."""
+
+import re
+import runpy
+from pathlib import Path
+
+import meshio
+import numpy as np
+import pytest
+
+import csgmesh as cm
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+LONGEST = 40
+PLATE = {"plate.left", "plate.right", "plate.bottom", "plate.top", "hole"}
+
+
+@pytest.fixture
+def run(tmp_path, monkeypatch, capsys):
+    """Runs an example in a folder of its own; what it printed, and where it wrote."""
+
+    def runner(name):
+        monkeypatch.chdir(tmp_path)
+        monkeypatch.setenv("MPLBACKEND", "Agg")
+        runpy.run_path(str(EXAMPLES / f"{name}.py"), run_name="__main__")
+        return capsys.readouterr().out, tmp_path
+
+    return runner
+
+
+def check_picture(path):
+    from matplotlib.image import imread
+
+    pixels = imread(path)
+    assert min(pixels.shape[:2]) > 200
+    assert pixels[..., :3].std() > 0.05, "the picture is blank"
+
+
+def test_each_example_is_run_here_and_short():
+    tested = {name.removeprefix("test_") for name in globals() if name.startswith("test_")}
+    for path in EXAMPLES.glob("*.py"):
+        assert path.stem in tested, f"no test runs {path.name}"
+        assert len(path.read_text().splitlines()) <= LONGEST, path.name
+
+
+def test_plate(run):
+    printed, folder = run("plate")
+    assert "the mesh is valid" in printed
+    check_picture(folder / "plate.png")
+    assert PLATE <= set(meshio.read(folder / "plate.msh").field_data)
+
+
+def test_bracket(run):
+    printed, folder = run("bracket")
+    assert "the mesh is valid" in printed
+    check_picture(folder / "bracket.png")
+    names = cm.read(folder / "bracket.vtu").names
+    assert {"wall", "face", "head", "web", "boss", "bore", "slot.disk", "slot.disk.2"} <= set(names)
+
+
+def test_inclusion(run):
+    printed, folder = run("inclusion")
+    chords, exact = map(float, re.search(r"interface: (\S+) in chords, (\S+) exactly", printed).groups())
+    assert exact == pytest.approx(2 * np.pi * 0.55, abs=1e-4)
+    assert 0 < exact - chords < 0.002
+    check_picture(folder / "inclusion.png")
+    mesh = meshio.read(folder / "inclusion.msh")
+    assert {"matrix", "grain", "bond", "block.left"} <= set(mesh.field_data)
+
+
+def test_corner(run):
+    printed, folder = run("corner")
+    assert "area 3\n" in printed
+    check_picture(folder / "corner.png")
+
+
+def test_glyphs(run):
+    printed, folder = run("glyphs")
+    assert "the mesh is valid" in printed
+    check_picture(folder / "glyphs.png")
+
+
+def test_poisson(run):
+    printed, folder = run("poisson")
+    errors = [float(e) for e in re.findall(r"error (\S+)", printed)]
+    assert len(errors) == 4
+    # Linear elements converge quadratically, also along curved boundaries: over three halvings
+    # of h the error falls by 8² = 64, give or take what unstructured meshes add.
+    assert 40 < errors[0] / errors[-1] < 110
+    assert errors[-1] < 4e-4
+    check_picture(folder / "poisson.png")
+
+
+@pytest.mark.parametrize("path", sorted(EXAMPLES.glob("*.yaml")), ids=lambda path: path.stem)
+def test_domain_files(path):
+    file = cm.load(path)
+    mesh = file.generate()
+    assert file.expect is not None
+    assert not file.mismatches(mesh)
+    certificate = cm.check(mesh, file.shape)
+    assert certificate.ok, str(certificate)
