@@ -88,23 +88,34 @@ def arrange(pieces: Pieces, frame: Frame, probes: np.ndarray, snap: float) -> Ar
     snap : float
         In local coordinates.
     """
-    meet = meetings(pieces, candidate_pairs(pieces, snap), snap)
+    pairs = candidate_pairs(pieces, snap)
+    meet = meetings(pieces, pairs, snap)
     cloud, user, owner = _cloud(pieces, frame, meet, probes)
-    representative = _clusters(cloud, snap)
-    chosen, vertex = np.unique(representative, return_inverse=True)
     k, e = len(pieces), len(meet.first)
+    busy = np.zeros(len(cloud), bool)
+    busy[2 * k :] = True
+    for part in (meet.first, meet.second):
+        busy[part] = busy[part + k] = True
+    representative = _clusters(cloud, _end_links(cloud[: 2 * k], pairs, snap), busy, snap)
+    chosen, vertex = _numbered_from_zero(representative)
     piece = np.concatenate([np.arange(k), np.arange(k), meet.first, meet.second])
     t = np.concatenate([pieces.lo, pieces.hi, meet.t_first, meet.t_second])
     event = vertex[2 * k : 2 * k + e]
     at = np.concatenate([vertex[:k], vertex[k : 2 * k], event, event])
     vertices, points = cloud[chosen], user[chosen]
-    near_piece, near_t, near_vertex = _vertices_on_pieces(pieces, vertices, piece, at, snap)
+    # Ends of pieces have been tried on their neighbours already; what is new is where pieces
+    # meet, and where merging moved a point.
+    new = np.zeros(len(chosen), bool)
+    new[vertex[busy | (cloud != vertices[vertex]).any(1)]] = True
+    near_piece, near_t, near_vertex = _vertices_on_pieces(
+        pieces, vertices, np.flatnonzero(new), piece, at, snap
+    )
     piece, t, at = (
         np.concatenate([piece, near_piece]),
         np.concatenate([t, near_t]),
         np.concatenate([at, near_vertex]),
     )
-    edges = _cut(pieces, piece, t, at, snap)
+    edges = _cut(pieces, piece, t, at)
     merged = _displacements(cloud, user, owner, representative, vertices, points, vertex, frame)
     return _merge_coincident(pieces, vertices, points, edges, vertex[2 * k + e :], merged, snap)
 
@@ -131,42 +142,79 @@ def _cloud(
     return local, user, owner
 
 
-def _clusters(cloud: np.ndarray, snap: float) -> np.ndarray:
-    """The lowest point of the cluster that each point belongs to, (n,)."""
+def _end_links(ends: np.ndarray, pairs: np.ndarray, snap: float) -> np.ndarray:
+    """Pairs of ends of neighbouring pieces no further apart than the snap distance, (k, 2)."""
+    k = len(ends) // 2
+    own = np.arange(k)
+    links = [np.column_stack([own, own + k])]
+    for shift_i in (0, k):
+        for shift_j in (0, k):
+            links.append(pairs + np.array([shift_i, shift_j]))
+    found = np.concatenate(links)
+    return found[np.hypot(*(ends[found[:, 0]] - ends[found[:, 1]]).T) <= snap]
+
+
+def _clusters(cloud: np.ndarray, links: np.ndarray, busy: np.ndarray, snap: float) -> np.ndarray:
+    """The lowest point of the cluster that each point belongs to, (n,).
+
+    Parameters
+    ----------
+    cloud : (n, 2) float64
+    links : (k, 2) int64
+        Pairs known to be near.
+    busy : (n,) bool
+        Points whose other neighbours are still to be found.
+    snap : float
+    """
     from scipy.sparse import coo_array
     from scipy.sparse.csgraph import connected_components
 
+    n = len(cloud)
+    some = np.flatnonzero(busy)
     # Cells far smaller than the snap distance first: a thousand lines through one point give half
     # a million events there, and their pairs would be too many to list.
-    cell = np.floor(cloud / (snap / 4)).astype(np.int64)
-    order = np.lexsort((np.arange(len(cloud)), cell[:, 1], cell[:, 0]))
-    new = np.r_[True, (cell[order][1:] != cell[order][:-1]).any(1)] if len(order) else order
-    group = np.empty(len(cloud), np.int64)
-    group[order] = np.cumsum(new) - 1
-    lead = order[new] if len(order) else order
-    pair = near_pairs(cloud[lead], snap)
-    n = len(lead)
+    cell = np.floor(cloud[some] / (snap / 4)).astype(np.int64)
+    order = np.lexsort((some, cell[:, 1], cell[:, 0]))
+    first = np.r_[True, (cell[order][1:] != cell[order][:-1]).any(1)][: len(order)]
+    lead = some[order[first]]
+    same = np.column_stack([some[order], lead[np.cumsum(first) - 1]])
+    near = lead[near_pairs(cloud[lead], snap)] if len(lead) else same
+    pair = np.concatenate([links, same, near])
     graph = coo_array((np.ones(len(pair), np.int8), (pair[:, 0], pair[:, 1])), shape=(n, n))
-    _, label = connected_components(graph, directed=False)
-    label = label[group]
-    lowest = np.full(label.max(initial=-1) + 1, len(cloud))
-    np.minimum.at(lowest, label, np.arange(len(cloud)))
+    count, label = connected_components(graph, directed=False)
+    lowest = np.full(count, n)
+    np.minimum.at(lowest, label, np.arange(n))
     return lowest[label]
 
 
+def _numbered_from_zero(representative: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The distinct representatives in order, and the place of each point's own among them."""
+    own = representative == np.arange(len(representative))
+    return np.flatnonzero(own), (np.cumsum(own) - 1)[representative]
+
+
 def _vertices_on_pieces(
-    pieces: Pieces, vertices: np.ndarray, piece: np.ndarray, at: np.ndarray, snap: float
+    pieces: Pieces,
+    vertices: np.ndarray,
+    new: np.ndarray,
+    piece: np.ndarray,
+    at: np.ndarray,
+    snap: float,
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Vertices within the snap distance of a piece that does not know them yet."""
+    """New vertices within the snap distance of a piece that does not know them yet."""
+    none = np.zeros(0, np.int64)
+    if len(new) == 0:
+        return none, np.zeros(0), none
     a = pieces.local.points(pieces.source, pieces.lo)
     b = pieces.local.points(pieces.source, pieces.hi)
     boxes = Boxes(np.minimum(a, b) - snap, np.maximum(a, b) + snap)
-    row, box = boxes.overlapping(vertices, vertices).T
-    known = np.unique(piece * len(vertices) + at)
+    row, box = boxes.overlapping(vertices[new], vertices[new]).T
+    row = new[row]
+    known = np.sort(piece * len(vertices) + at)
     key = box * len(vertices) + row
     place = np.minimum(np.searchsorted(known, key), len(known) - 1)
-    new = known[place] != key if len(known) else np.ones(len(key), bool)
-    row, box = row[new], box[new]
+    unknown = known[place] != key
+    row, box = row[unknown], box[unknown]
     t = project_pieces(pieces, box, vertices[row])
     off = np.hypot(*(pieces.local.points(pieces.source[box], t) - vertices[row]).T)
     near = off <= snap
@@ -182,23 +230,42 @@ class _Edges:
     t_head: np.ndarray
 
 
-def _cut(
-    pieces: Pieces, piece: np.ndarray, t: np.ndarray, at: np.ndarray, snap: float
-) -> _Edges:
-    """Pieces between consecutive vertices; what begins and ends in one vertex vanishes."""
+def _cut(pieces: Pieces, piece: np.ndarray, t: np.ndarray, at: np.ndarray) -> _Edges:
+    """Pieces between consecutive vertices; what begins and ends in one vertex vanishes.
+
+    Parameters
+    ----------
+    pieces : Pieces
+    piece, t, at : (k,)
+        Piece, parameter and vertex of each cut; the starts of all pieces come first, then the ends.
+    """
+    k = len(pieces)
+    whole = np.bincount(piece, minlength=k) == 2
+    # Most pieces have nothing but their two ends, which come first and second.
+    first_vertex, last_vertex = at[:k], at[k : 2 * k]
+    straight = np.flatnonzero(whole & (first_vertex != last_vertex))
+    split = ~whole[piece]
+    piece, t, at = piece[split], t[split], at[split]
     ends_last = (t == pieces.hi[piece]).astype(np.int64) - (t == pieces.lo[piece])
     order = np.lexsort((at, ends_last, t, piece))
     piece, t, at = piece[order], t[order], at[order]
-    # Within a run of the same vertex keep the first, but let a piece's own ends have the say.
     same = (piece[1:] == piece[:-1]) & (at[1:] == at[:-1])
     keep = np.r_[True, ~same][: len(at)]
     piece, t, at = piece[keep], t[keep], at[keep]
-    whole = np.flatnonzero(piece[1:] == piece[:-1])
-    edges = _Edges(piece[whole], at[whole], at[whole + 1], t[whole], t[whole + 1])
+    tail = np.flatnonzero(piece[1:] == piece[:-1])
+    owner, end = piece[tail], t[tail + 1]
     # The last run of a piece reaches to the piece's end, whatever vertex of the run came first.
-    last = np.r_[edges.piece[1:] != edges.piece[:-1], True] if len(whole) else whole
-    edges.t_head[last] = pieces.hi[edges.piece[last]]
-    return edges
+    last = np.r_[owner[1:] != owner[:-1], True][: len(owner)]
+    end[last] = pieces.hi[owner[last]]
+    owner = np.concatenate([straight, owner])
+    order = np.argsort(owner, kind="stable")
+    return _Edges(
+        owner[order],
+        np.concatenate([first_vertex[straight], at[tail]])[order],
+        np.concatenate([last_vertex[straight], at[tail + 1]])[order],
+        np.concatenate([pieces.lo[straight], t[tail]])[order],
+        np.concatenate([pieces.hi[straight], end])[order],
+    )
 
 
 def _merge_coincident(
@@ -211,10 +278,9 @@ def _merge_coincident(
     snap: float,
 ) -> Arrangement:
     low, high = np.minimum(edges.tail, edges.head), np.maximum(edges.tail, edges.head)
-    order = np.lexsort((edges.piece, high, low))
-    group = np.cumsum(
-        np.r_[False, (low[order][1:] != low[order][:-1]) | (high[order][1:] != high[order][:-1])]
-    )
+    key = low * len(vertices) + high
+    order = np.argsort(key, kind="stable")
+    group = np.cumsum(np.r_[False, key[order][1:] != key[order][:-1]][: len(order)])
     group_of = np.empty(len(order), np.int64)
     group_of[order] = group
     label = np.full(len(order), -1)

@@ -38,25 +38,39 @@ class Meetings:
 
 
 def candidate_pairs(pieces: Pieces, snap: float) -> np.ndarray:
-    """Pairs of pieces whose boxes come within the snap distance, (k, 2).
+    """Pairs of pieces whose boxes come within the snap distance, (k, 2)."""
+    a, b = ends_of(pieces)
+    return Boxes(np.minimum(a, b) - snap, np.maximum(a, b) + snap).pairs()
+
+
+def ends_of(pieces: Pieces) -> tuple[np.ndarray, np.ndarray]:
+    """Points at the lower and at the upper parameter of each piece, in local coordinates."""
+    local = pieces.local
+    return local.points(pieces.source, pieces.lo), local.points(pieces.source, pieces.hi)
+
+
+def _beyond_their_corner(pieces: Pieces, pairs: np.ndarray) -> np.ndarray:
+    """The pairs that may meet elsewhere than in a common corner of their boxes.
 
     Monotone pieces that follow one another have boxes that share a corner, which both know.
     """
-    a = pieces.local.points(pieces.source, pieces.lo)
-    b = pieces.local.points(pieces.source, pieces.hi)
+    a, b = ends_of(pieces)
     lo, hi = np.minimum(a, b), np.maximum(a, b)
-    pair = Boxes(lo - snap, hi + snap).pairs()
-    i, j = pair.T
-    common = np.zeros(len(pair), bool)
+    i, j = pairs.T
+    corner = (np.minimum(hi[i], hi[j]) <= np.maximum(lo[i], lo[j])).all(1)
+    k = np.flatnonzero(corner)
+    common = np.zeros(len(k), bool)
     for p in (a, b):
         for q in (a, b):
-            common |= (p[i] == q[j]).all(1)
-    corner = (np.minimum(hi[i], hi[j]) - np.maximum(lo[i], lo[j]) <= 0).all(1)
-    return pair[~(common & corner)]
+            common |= (p[i[k]] == q[j[k]]).all(1)
+    out = np.ones(len(pairs), bool)
+    out[k[common]] = False
+    return pairs[out]
 
 
 def meetings(pieces: Pieces, pairs: np.ndarray, snap: float) -> Meetings:
     """All points in which pairs of pieces cross, touch, or end on one another."""
+    pairs = _beyond_their_corner(pieces, pairs)
     kind = pieces.local.kind[pieces.source]
     circle = pieces.local.is_circular()[pieces.source]
     # Lines come first in a pair, circles before other arcs, so that each case has one form.
@@ -95,6 +109,11 @@ def _accepted(pieces: Pieces, row: np.ndarray, t: np.ndarray, snap: float) -> Me
 
 
 def _line_line(pieces: Pieces, pairs: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    a, b = (ends[pairs] for ends in ends_of(pieces))
+    # Two lines with a common end meet nowhere else, unless the end of one lies on the other.
+    common = (a[:, 0] == a[:, 1]).all(1) | (b[:, 0] == b[:, 1]).all(1)
+    common |= (a[:, 0] == b[:, 1]).all(1) | (b[:, 0] == a[:, 1]).all(1)
+    pairs = pairs[~common]
     data = pieces.local.data[pieces.source[pairs]]
     p, q = data[:, 0, :2], data[:, 1, :2]
     r, s = data[:, 0, 2:4] - p, data[:, 1, 2:4] - q

@@ -135,7 +135,8 @@ def _report(program: Program, arrangement: Arrangement) -> Report:
     leaf = arrangement.pieces.leaf
     merges = []
     for k in range(min(len(merged.distance), Report.LISTED)):
-        owners = [labels[leaf[p]] if p >= 0 else "embedded point" for p in merged.piece[k].tolist()]
+        through = sorted(merged.piece[k].tolist(), key=lambda p: leaf[p] if p >= 0 else len(labels))
+        owners = [labels[leaf[p]] if p >= 0 else "embedded point" for p in through]
         merges.append(
             Merge(
                 tuple(merged.place[k].tolist()),

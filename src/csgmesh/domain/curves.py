@@ -16,6 +16,9 @@ LINE, ARC, QUADRATIC, CUBIC = 0, 1, 2, 3
 #: Numbers of `Curves.data` that a kind uses.
 WIDTH = {LINE: 4, ARC: 6, QUADRATIC: 6, CUBIC: 8}
 
+#: Which of the four pairs of `Curves.data` are points, a row a kind.
+_MOVES = np.array([[1, 1, 0, 0], [1, 0, 0, 0], [1, 1, 1, 0], [1, 1, 1, 1]], float)
+
 _GAUSS_X, _GAUSS_W = np.polynomial.legendre.leggauss(12)
 _PANELS = 8
 _SAMPLES = 17
@@ -95,13 +98,9 @@ class Curves:
     def transformed(self, matrix: np.ndarray, offset: np.ndarray) -> Curves:
         """The image under ``x -> matrix @ x + offset``; parameters stay what they are."""
         blocks = self.data.reshape(-1, 4, 2) @ np.asarray(matrix, float).T
-        used = np.zeros((len(self), 4), bool)
-        for kind, width in WIDTH.items():
-            used[self.kind == kind, : width // 2] = True
         # The axes u and v of an arc are vectors, not points: they do not move.
-        used[self.kind == ARC, 1:] = False
-        blocks = np.where(used[:, :, None], blocks + np.asarray(offset, float), blocks)
-        return Curves(self.kind, np.ascontiguousarray(blocks.reshape(-1, 8)), self.interval)
+        blocks += _MOVES[self.kind][:, :, None] * np.asarray(offset, float)
+        return Curves(self.kind, blocks.reshape(-1, 8), self.interval)
 
     def points(self, i: np.ndarray, t: np.ndarray) -> np.ndarray:
         """Points of curves `i` (k,) at parameters `t` (k,), as (k, 2)."""
@@ -124,16 +123,17 @@ class Curves:
         return self.points(np.arange(len(self)), self.interval[:, 1])
 
     def _evaluate(self, i: np.ndarray, t: np.ndarray, order: int) -> np.ndarray:
-        i = np.asarray(i, np.int64)
-        t = np.broadcast_to(np.asarray(t, float), i.shape)
-        out = np.empty((len(i), 2))
         kind = self.kind[i]
+        if len(kind) == 0:
+            return np.empty((0, 2))
+        data, t = self.data[i], np.asarray(t, float)[:, None]
+        if (kind == kind[0]).all():
+            return _FORMULA[int(kind[0])](data, t, order)
+        out = np.empty((len(kind), 2))
         for k in WIDTH:
-            at = slice(None) if (kind == k).all() else np.flatnonzero(kind == k)
-            if isinstance(at, slice) or len(at):
-                out[at] = _FORMULA[k](self.data[i[at]], t[at][:, None], order)
-                if isinstance(at, slice):
-                    break
+            at = np.flatnonzero(kind == k)
+            if len(at):
+                out[at] = _FORMULA[k](data[at], t[at], order)
         return out
 
     def bounds(self) -> tuple[np.ndarray, np.ndarray]:
@@ -268,7 +268,23 @@ class Curves:
         grid = lo[:, None] + (hi - lo)[:, None] * np.linspace(0.0, 1.0, _SAMPLES)
         p = self.points(np.repeat(i, _SAMPLES), grid.ravel()).reshape(len(i), _SAMPLES, 2)
         nearest = ((p - points[:, None]) ** 2).sum(2).argmin(1)
-        t = grid[np.arange(len(i)), nearest]
+        t = self._descend(i, points, grid[np.arange(len(i)), nearest], lo, hi)
+        # Where a closed curve begins it also ends, and the nearest point may lie on either side.
+        last = _SAMPLES - 1
+        closed = (p[:, 0] == p[:, last]).all(1) | (np.abs(hi - lo) >= 2 * np.pi)
+        seam = np.flatnonzero(closed & ((nearest == 0) | (nearest == last)))
+        if len(seam):
+            other = np.where(nearest[seam] == 0, hi[seam], lo[seam])
+            s = self._descend(i[seam], points[seam], other, lo[seam], hi[seam])
+            off_t = ((self.points(i[seam], t[seam]) - points[seam]) ** 2).sum(1)
+            off_s = ((self.points(i[seam], s) - points[seam]) ** 2).sum(1)
+            t[seam] = np.where(off_s < off_t, s, t[seam])
+        return t
+
+    def _descend(
+        self, i: np.ndarray, points: np.ndarray, t: np.ndarray, lo: np.ndarray, hi: np.ndarray
+    ) -> np.ndarray:
+        """Newton's method for the nearest point, within one sample of the start."""
         step = (hi - lo) / (_SAMPLES - 1)
         low, high = np.maximum(t - step, lo), np.minimum(t + step, hi)
         for _ in range(12):
