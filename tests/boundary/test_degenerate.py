@@ -23,7 +23,7 @@ def test_area_and_names_survive_every_placement(label):
     for _, place, scale in placements():
         pslg = cm.evaluate(place(shape))
         # Where a sliver's width is a difference of coordinates, their rounding limits its area.
-        rounding = 1e-13 * scale**2
+        rounding = 1e-14 * scale**2
         assert pslg.areas().sum() == pytest.approx(area * scale**2, rel=1e-9, abs=rounding)
         assert names <= set(pslg.names)
 
@@ -50,7 +50,7 @@ def test_an_offset_of_1e9_moves_nothing_but_rounding(label):
 def test_extreme_scales(scale):
     for shape, area, _ in CASES.values():
         got = cm.evaluate(shape.scale(scale)).areas().sum() / scale**2
-        assert got == pytest.approx(area, rel=1e-9, abs=1e-13)
+        assert got == pytest.approx(area, rel=1e-9, abs=1e-14)
 
 
 @pytest.mark.parametrize("label", CASES)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, fields
 from typing import Any, Protocol
@@ -193,10 +194,14 @@ class Pslg:
         return 0.5 * (lo + hi)
 
     def _sum_sides(self, terms: np.ndarray) -> np.ndarray:
-        n = len(self.region_names)
-        left, right = self.segment_region.T
-        total = np.bincount(left[left >= 0], terms[left >= 0], n)
-        return total - np.bincount(right[right >= 0], terms[right >= 0], n)
+        # Slivers are small differences of large areas: sum without rounding.
+        region = np.concatenate([self.segment_region[:, 0], self.segment_region[:, 1]])
+        signed = np.concatenate([terms, -terms])
+        order = np.argsort(region, kind="stable")
+        bounds = np.searchsorted(region[order], np.arange(len(self.region_names) + 1))
+        signed = signed[order]
+        pairs = zip(bounds[:-1], bounds[1:], strict=True)
+        return np.array([math.fsum(signed[i:j].tolist()) for i, j in pairs])
 
 
 def marker_table(
