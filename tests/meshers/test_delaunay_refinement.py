@@ -317,3 +317,16 @@ def test_the_lattice_keeps_to_regions_and_interfaces() -> None:
     assert_sound(mesh, domain)
     assert_angles(mesh, domain, 30)
     assert_on_curves(mesh, 1e-14)
+
+
+@pytest.mark.parametrize("degrees", [50, 20, 1])
+def test_a_lattice_row_on_a_long_sharp_segment_leaves_no_slivers(degrees: float) -> None:
+    # Sharp corners are not seeded, so that the lattice meets bare slanted segments.
+    t = np.radians([17.0, 17.0 + degrees])
+    far = list(zip(3 * np.cos(t), 3 * np.sin(t), strict=True))
+    domain = loops([(0, 0), *far, (-1, 2)])
+    for size in (0.2, 0.03):
+        mesh = DelaunayRefinement(max_points=100_000).generate(domain, size)
+        assert_sound(mesh, domain)
+        assert_angles(mesh, domain, 30)
+        assert mesh.info["n_given_up"] == 0

@@ -53,8 +53,21 @@ def stroll(net, t, x, y, seed):
 
 
 @njit(**HELPER)
-def is_free(net, n_ring, x, y, from_vertex, from_middle):
-    """Whether (x, y) keeps its distance (squared) from vertices and subsegments' middles."""
+def squared_distance(xy, a, b, x, y):
+    """Squared distance of (x, y) from the segment a–b."""
+    ux = xy[2 * b] - xy[2 * a]
+    uy = xy[2 * b + 1] - xy[2 * a + 1]
+    px = x - xy[2 * a]
+    py = y - xy[2 * a + 1]
+    share = min(max((px * ux + py * uy) / (ux * ux + uy * uy), 0.0), 1.0)
+    px -= share * ux
+    py -= share * uy
+    return px * px + py * py
+
+
+@njit(**HELPER)
+def is_free(net, n_ring, x, y, from_vertex, from_segment):
+    """Whether (x, y) keeps its distances (squared) from vertices and subsegments around it."""
     xy = net.xy
     for i in range(n_ring):
         v = net.ring_from[i]
@@ -66,9 +79,7 @@ def is_free(net, n_ring, x, y, from_vertex, from_middle):
             return False
         if net.ring_sub[i] >= 0:
             w = net.ring_from[i + 1 if i + 1 < n_ring else 0]
-            dx = 0.5 * (xy[2 * v] + xy[2 * w]) - x
-            dy = 0.5 * (xy[2 * v + 1] + xy[2 * w + 1]) - y
-            if dx * dx + dy * dy < from_middle:
+            if squared_distance(xy, v, w, x, y) < from_segment:
                 return False
     return True
 
@@ -78,7 +89,7 @@ def fill(points, origin, twin, sub, work, candidates, counts, distances):
     """Insert those candidates that lie inside, keep their distance and do not encroach.
 
     counts: points, triangles, next candidate, triangle to start from. distances: squared ones
-    allowed from vertices and from the middles of subsegments. There must be room for all.
+    allowed from vertices and from subsegments. There must be room for all.
     """
     room = work.shape[1]
     net = Net(

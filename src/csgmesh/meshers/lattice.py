@@ -7,10 +7,10 @@ import numpy as np
 from csgmesh import kernels
 from csgmesh.meshers.workspace import MOST_POINTS, ROOM, SLICE, Workspace, grown, rounds
 
-#: Lattice points nearer than this to a vertex, or to a subsegment's middle, are left out (shares
-#: of the size): what lies between lattice and boundary is left to refinement.
+#: Lattice points nearer than this to a vertex, or to a subsegment, are left out (shares of the
+#: size): what lies between lattice and boundary is left to refinement.
 FROM_VERTEX = 0.7
-FROM_MIDDLE = 0.55
+FROM_SEGMENT = 0.5
 
 
 def fill_with_lattice(work: Workspace, size: float) -> None:
@@ -28,7 +28,7 @@ def fill_with_lattice(work: Workspace, size: float) -> None:
     for name in ("origin", "twin", "sub"):
         setattr(work, name, grown(getattr(work, name), 4 * (work.n_triangles + 2 * n)))
     counts = np.array([work.n_points, work.n_triangles, 0, 0], np.int64)
-    distances = np.array([(FROM_VERTEX * size) ** 2, (FROM_MIDDLE * size) ** 2])
+    distances = np.array([(FROM_VERTEX * size) ** 2, (FROM_SEGMENT * size) ** 2])
     while True:
         status = kernels.fill(
             work.points,
