@@ -14,26 +14,28 @@ def union_area(centres: np.ndarray, radii: np.ndarray) -> float:
     """Area of a union of disks by Green's theorem over the uncovered arcs of each circle."""
     total = 0.0
     for k, (c, r) in enumerate(zip(centres, radii, strict=True)):
-        covered = []
-        for other, (d, s) in enumerate(zip(centres, radii, strict=True)):
-            gap = np.hypot(*(d - c))
-            if other == k or gap >= r + s or gap <= r - s:
-                continue
-            if gap <= s - r:
-                covered.append((0.0, 2 * np.pi))
-                continue
-            towards = np.arctan2(*(d - c)[::-1])
-            half = np.arccos((gap**2 + r**2 - s**2) / (2 * gap * r))
-            a = (towards - half) % (2 * np.pi)
-            covered.append((a, min(a + 2 * half, 2 * np.pi)))
-            if a + 2 * half > 2 * np.pi:
-                covered.append((0.0, a + 2 * half - 2 * np.pi))
-        at = 0.0
-        for a, b in [*sorted(covered), (2 * np.pi, 2 * np.pi)]:
-            if a > at:
-                total += 0.5 * r * r * (a - at)
-                total += 0.5 * r * (c[0] * (np.sin(a) - np.sin(at)) - c[1] * (np.cos(a) - np.cos(at)))
-            at = max(at, b)
+        # Only neighbours can cover a circle.
+        near = np.flatnonzero(np.hypot(*(centres - c).T) < r + radii)
+        total += uncovered(c, r, centres[near[near != k]] - c, radii[near[near != k]])
+    return total
+
+
+def uncovered(c: np.ndarray, r: float, d: np.ndarray, s: np.ndarray) -> float:
+    """Green's terms of the arcs of a circle that disks of radii s at offsets d leave free."""
+    gap = np.hypot(*d.T)
+    if (gap <= s - r).any():
+        return 0.0
+    d, s, gap = (x[gap > r - s] for x in (d, s, gap))
+    half = np.arccos((gap**2 + r**2 - s**2) / (2 * gap * r))
+    a = (np.arctan2(d[:, 1], d[:, 0]) - half) % (2 * np.pi)
+    spans = [(x, min(x + 2 * h, 2 * np.pi)) for x, h in zip(a, half, strict=True)]
+    spans += [(0.0, x + 2 * h - 2 * np.pi) for x, h in zip(a, half, strict=True)]
+    total, at = 0.0, 0.0
+    for x, y in [*sorted(spans), (2 * np.pi, 2 * np.pi)]:
+        if x > at:
+            bow = c[0] * (np.sin(x) - np.sin(at)) - c[1] * (np.cos(x) - np.cos(at))
+            total += 0.5 * r * r * (x - at) + 0.5 * r * bow
+        at = max(at, y)
     return float(total)
 
 
@@ -69,38 +71,7 @@ def test_ten_thousand_terms_one_by_one():
     pslg = cm.evaluate(shape)
     centres = np.array([d.center for d in disks])
     radii = np.array([d.radius for d in disks])
-    assert pslg.areas()[0] == pytest.approx(_banded_union_area(centres, radii), rel=1e-11)
-
-
-def _banded_union_area(centres: np.ndarray, radii: np.ndarray) -> float:
-    # Only neighbours can cover a circle: hand each one its own.
-    total = 0.0
-    for c, r in zip(centres, radii, strict=True):
-        near = np.hypot(*(centres - c).T) < r + radii
-        own = np.flatnonzero((centres[near] == c).all(1))[0]
-        order = np.r_[own, np.delete(np.arange(near.sum()), own)]
-        total += _one_circle(centres[near][order], radii[near][order])
-    return total
-
-
-def _one_circle(centres: np.ndarray, radii: np.ndarray) -> float:
-    c, r = centres[0], radii[0]
-    d, s = centres[1:] - c, radii[1:]
-    gap = np.hypot(*d.T)
-    if (gap <= s - r).any():
-        return 0.0
-    d, s, gap = (x[gap > r - s] for x in (d, s, gap))
-    half = np.arccos((gap**2 + r**2 - s**2) / (2 * gap * r))
-    a = (np.arctan2(d[:, 1], d[:, 0]) - half) % (2 * np.pi)
-    spans = [(x, min(x + 2 * h, 2 * np.pi)) for x, h in zip(a, half, strict=True)]
-    spans += [(0.0, x + 2 * h - 2 * np.pi) for x, h in zip(a, half, strict=True)]
-    total, at = 0.0, 0.0
-    for x, y in [*sorted(spans), (2 * np.pi, 2 * np.pi)]:
-        if x > at:
-            total += 0.5 * r * r * (x - at)
-            total += 0.5 * r * (c[0] * (np.sin(x) - np.sin(at)) - c[1] * (np.cos(x) - np.cos(at)))
-        at = max(at, y)
-    return total
+    assert pslg.areas()[0] == pytest.approx(union_area(centres, radii), rel=1e-11)
 
 
 def test_a_deep_tree_that_does_not_flatten():

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, fields
+from itertools import pairwise
 from typing import Any, Protocol
 
 import numpy as np
@@ -200,8 +201,7 @@ class Pslg:
         order = np.argsort(region, kind="stable")
         bounds = np.searchsorted(region[order], np.arange(len(self.region_names) + 1))
         signed = signed[order]
-        pairs = zip(bounds[:-1], bounds[1:], strict=True)
-        return np.array([math.fsum(signed[i:j].tolist()) for i, j in pairs])
+        return np.array([math.fsum(signed[i:j].tolist()) for i, j in pairwise(bounds.tolist())])
 
 
 def marker_table(
