@@ -33,8 +33,8 @@ class Curves:
     kind : (n,) int8
         `LINE`, `ARC`, `QUADRATIC` or `CUBIC`.
     data : (n, 8) float64
-        ``p0 p1`` for a line, ``c u v`` for the elliptic arc ``c + cos(t) u + sin(t) v``, the control
-        points for a Bézier curve; the rest is zero.
+        ``p0 p1`` for a line, ``c u v`` for the elliptic arc ``c + cos(t) u + sin(t) v``, the
+        control points for a Bézier curve; the rest is zero.
     interval : (n, 2) float64
         Parameters at the piece's start and end; radians for arcs, within [0, 1] otherwise. The
         direction of travel is from the first to the second, so an arc's may decrease.
@@ -320,7 +320,7 @@ def _table(
 def _line(d: np.ndarray, t: np.ndarray, order: int) -> np.ndarray:
     along = d[:, 2:4] - d[:, 0:2]
     if order == 0:
-        # Measured from the nearer end: exact at both, and axis-parallel lines keep their coordinate.
+        # From the nearer end: exact at both, and axis-parallel lines keep their coordinate.
         return np.where(t < 0.5, d[:, 0:2] + t * along, d[:, 2:4] - (1 - t) * along)
     return along if order == 1 else np.zeros((len(d), 2))
 
