@@ -7,11 +7,11 @@ from __future__ import annotations
 
 import os
 import runpy
-import shutil
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
 import matplotlib
+from PIL import Image
 
 IMAGES = Path(__file__).parent / "images"
 EXAMPLES = Path(__file__).parents[1] / "examples"
@@ -27,7 +27,9 @@ def main() -> None:
             runpy.run_path(str(example))
             os.chdir(home)
             picture = f"{example.stem}.png"
-            shutil.copy(Path(folder) / picture, IMAGES / picture)
+            with Image.open(Path(folder) / picture) as image:
+                # A palette keeps the repository small.
+                image.convert("RGB").quantize(128).save(IMAGES / picture, optimize=True)
 
 
 if __name__ == "__main__":
