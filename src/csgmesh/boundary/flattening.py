@@ -13,7 +13,6 @@ import numpy as np
 
 from csgmesh.boundary.arrangement import Arrangement
 from csgmesh.boundary.chains import Chains
-from csgmesh.boundary.pieces import Frame
 from csgmesh.domain.curves import CUBIC, LINE, Curves, cross
 from csgmesh.errors import EvaluationError, ShapeError
 from csgmesh.spatial import Boxes
@@ -41,9 +40,7 @@ class Chords:
     tail, head : (m,) int64
         Points; numbers below the number of vertices are vertices of the arrangement.
     points : (n, 2) float64
-        In local coordinates, the arrangement's vertices first.
-    user : (n, 2) float64
-        In user coordinates.
+        The arrangement's vertices first, in the coordinates of the curves that were asked.
     """
 
     chain: np.ndarray
@@ -52,19 +49,17 @@ class Chords:
     tail: np.ndarray
     head: np.ndarray
     points: np.ndarray
-    user: np.ndarray
 
 
 def flatten(
-    arrangement: Arrangement, chains: Chains, frame: Frame, deviation: float | None, snap: float
+    arrangement: Arrangement, chains: Chains, deviation: float | None, snap: float
 ) -> Chords:
-    """Chords of all chains.
+    """Chords of all chains, their points in user coordinates.
 
     Parameters
     ----------
     arrangement : Arrangement
     chains : Chains
-    frame : Frame
     deviation : float, optional
         Largest distance of a chord from its curve in user coordinates; a share of the leaf's extent
         by default.
@@ -81,26 +76,47 @@ def flatten(
     step = np.arange(len(chain)) - np.repeat(np.cumsum(counts) - counts, counts)
     t0, t1 = chains.t0[chain], chains.t1[chain]
     begin = t0 + step / counts[chain] * (t1 - t0)
-    chords = _chords(arrangement, chains, chain, begin, step + 1 == counts[chain])
     suspects = _suspect_chains(arrangement, chains, snap)
-    if len(suspects) == 0:
-        return chords
+    involved = np.zeros(len(counts), bool)
+    involved[suspects] = True
+    busy = involved[chain]
+    if busy.any():
+        fine_chain, fine_begin = _without_conflicts(
+            arrangement, chains, chain[busy], begin[busy], suspects, snap
+        )
+        chain = np.concatenate([chain[~busy], fine_chain])
+        order = np.argsort(chain, kind="stable")
+        chain, begin = chain[order], np.concatenate([begin[~busy], fine_begin])[order]
+    return _chords(arrangement.pieces.curves, arrangement.points, chains, chain, begin)
+
+
+def _without_conflicts(
+    arrangement: Arrangement,
+    chains: Chains,
+    chain: np.ndarray,
+    begin: np.ndarray,
+    suspects: np.ndarray,
+    snap: float,
+) -> tuple[np.ndarray, np.ndarray]:
+    """Chain and start parameter of chords, halved until none is in conflict with another."""
+    local, vertices = arrangement.pieces.local, arrangement.vertices
+    stuck = np.zeros(0, bool)
     for _ in range(_ROUNDS):
+        chords = _chords(local, vertices, chains, chain, begin)
         halve, stuck = _conflicts(arrangement, chains, chords, suspects, snap)
         if not halve.any():
             break
-        t0 = chords.t0
-        middle = 0.5 * (t0 + chords.t1)[halve]
+        middle = 0.5 * (chords.t0 + chords.t1)[halve]
         at = np.flatnonzero(halve) + 1
-        chain, t0 = np.insert(chords.chain, at, chords.chain[halve]), np.insert(t0, at, middle)
-        chords = _chords(arrangement, chains, chain, t0, np.r_[chain[1:] != chain[:-1], True])
+        chain, begin = np.insert(chain, at, chain[halve]), np.insert(begin, at, middle)
     if stuck.any():
-        x, y = chords.user[chords.tail[np.flatnonzero(stuck)[0]]]
+        first = np.flatnonzero(stuck)[:1]
+        x, y = arrangement.pieces.curves.points(chains.source[chain[first]], begin[first])[0]
         raise EvaluationError(
             f"boundaries near ({x:.6g}, {y:.6g}) come closer than rounding can keep apart; "
             "give a larger snap"
         )
-    return chords
+    return chain, begin
 
 
 def _chord_counts(arrangement: Arrangement, chains: Chains, deviation: float | None) -> np.ndarray:
@@ -135,23 +151,21 @@ def _turning(curves: Curves, chains: Chains) -> np.ndarray:
 
 
 def _chords(
-    arrangement: Arrangement, chains: Chains, chain: np.ndarray, t0: np.ndarray, last: np.ndarray
+    curves: Curves, vertices: np.ndarray, chains: Chains, chain: np.ndarray, begin: np.ndarray
 ) -> Chords:
-    first = np.r_[True, last[:-1]]
-    nv = len(arrangement.vertices)
+    """Chords that begin at the given parameters, sorted by chain and parameter."""
+    new = chain[1:] != chain[:-1]
+    first, last = np.r_[True, new], np.r_[new, True]
     tail = np.empty(len(chain), np.int64)
     tail[first] = chains.tail[chain[first]]
     inner = np.flatnonzero(~first)
-    tail[inner] = nv + np.arange(len(inner))
+    tail[inner] = len(vertices) + np.arange(len(inner))
     head = np.r_[tail[1:], -1]
     head[last] = chains.head[chain[last]]
-    t1 = np.r_[t0[1:], 0.0]
-    t1[last] = chains.t1[chain[last]]
-    source = chains.source[chain[inner]]
-    pieces = arrangement.pieces
-    points = np.concatenate([arrangement.vertices, pieces.local.points(source, t0[inner])])
-    user = np.concatenate([arrangement.points, pieces.curves.points(source, t0[inner])])
-    return Chords(chain, t0, t1, tail, head, points, user)
+    end = np.r_[begin[1:], 0.0]
+    end[last] = chains.t1[chain[last]]
+    points = np.concatenate([vertices, curves.points(chains.source[chain[inner]], begin[inner])])
+    return Chords(chain, begin, end, tail, head, points)
 
 
 def _suspect_chains(arrangement: Arrangement, chains: Chains, snap: float) -> np.ndarray:

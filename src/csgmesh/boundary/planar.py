@@ -41,7 +41,7 @@ def evaluate_plane(shape: Any, deviation: float | None, snap: float | None) -> P
     _, face = planar_map(arrangement, local_snap)
     region = face_regions(program, arrangement, face)
     kept = chains(program, arrangement, face, region)
-    chords = flatten(arrangement, kept, frame, deviation, local_snap)
+    chords = flatten(arrangement, kept, deviation, local_snap)
     probe_marker, names = _probe_markers(program, kept.names, [len(p) for p in probes])
     return _pslg(
         program, arrangement, kept, chords, probe_marker, names,
@@ -79,7 +79,7 @@ def _pslg(
     used, number = np.unique(
         np.concatenate([segments.ravel(), arrangement.probe_vertex]), return_inverse=True
     )
-    points = chords.user[used]
+    points = chords.points[used]
     _refuse_outside(program, points[number[segments.size :]], probe_marker, names)
     point_marker = np.full(len(used), -1)
     point_marker[number[segments.size :]] = probe_marker

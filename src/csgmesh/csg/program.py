@@ -22,6 +22,9 @@ from csgmesh.domain.curves import Curves
 Code = tuple[tuple[str, int], ...]
 
 
+_IDENTITY = {dim: np.eye(dim).tolist() for dim in (2, 3)}
+
+
 @dataclass(frozen=True, eq=False)
 class Leaf:
     """A primitive placed and named.
@@ -46,7 +49,7 @@ class Leaf:
     @cached_property
     def _inverse(self) -> np.ndarray | None:
         """The inverse matrix, or None for the identity."""
-        if (self.matrix == np.eye(len(self.matrix))).all():
+        if self.matrix.tolist() == _IDENTITY[len(self.matrix)]:
             return None
         if len(self.matrix) == 2:
             (a, b), (c, d) = self.matrix
@@ -65,6 +68,8 @@ class Leaf:
     def curves(self) -> tuple[Curves, np.ndarray]:
         """The placed closed boundary, interior on the left, and the part of every curve."""
         table, part = self.primitive.curves()
+        if self._inverse is None and not self.offset.any():
+            return table, part
         table = table.transformed(self.matrix, self.offset)
         if np.linalg.det(self.matrix) < 0.0:
             backwards = np.arange(len(table))[::-1]

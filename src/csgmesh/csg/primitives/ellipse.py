@@ -9,17 +9,24 @@ import numpy as np
 
 from csgmesh.csg import checks, matrices
 from csgmesh.csg.primitive import Frame, Primitive
-from csgmesh.domain.curves import Curves
+from csgmesh.domain.curves import ARC, Curves
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
 
+_FOUR_ARCS = np.full(4, ARC, np.int8)
+_QUARTERS = np.arange(4)[:, None] * (np.pi / 2) + np.array([0.0, np.pi / 2])
+_QUARTERS[:-1, 1] = _QUARTERS[1:, 0]
+for _shared in (_FOUR_ARCS, _QUARTERS):
+    _shared.flags.writeable = False
+
+
 def quarter_arcs(center: np.ndarray, u: np.ndarray, v: np.ndarray) -> Curves:
     """The whole ellipse ``center + cos(t) u + sin(t) v`` as four arcs cut at multiples of π/2."""
-    cuts = np.arange(5) * (np.pi / 2)
-    c, u, v = (np.tile(vector, (4, 1)) for vector in (center, u, v))
-    return Curves.arcs(c, u, v, cuts[:-1], cuts[1:])
+    data = np.zeros((4, 8))
+    data[:, 0:2], data[:, 2:4], data[:, 4:6] = center, u, v
+    return Curves(_FOUR_ARCS, data, _QUARTERS)
 
 
 @dataclass(frozen=True, eq=False, repr=False, init=False)
