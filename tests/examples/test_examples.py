@@ -4,6 +4,7 @@ import re
 import runpy
 from pathlib import Path
 
+import matplotlib.pyplot as plt
 import meshio
 import numpy as np
 import pytest
@@ -25,7 +26,8 @@ def run(tmp_path, monkeypatch, capsys):
         runpy.run_path(str(EXAMPLES / f"{name}.py"), run_name="__main__")
         return capsys.readouterr().out, tmp_path
 
-    return runner
+    yield runner
+    plt.close("all")
 
 
 def check_picture(path):
