@@ -115,11 +115,19 @@ def check(mesh: Mesh, shape: Any = None) -> Certificate:
 
     if shape is None:
         return verify(mesh)
-    reference = evaluate(shape, deviation=_deviation_of(mesh))
+    reference = _reference(mesh, shape)
     contains = reference.oracle.region if reference.oracle is not None else None
     return verify(mesh, reference, contains)
 
 
-def _deviation_of(mesh: Mesh) -> float | None:
-    # A domain of straight segments states 0, which is no deviation to ask for.
-    return mesh.domain.deviation or None if mesh.domain is not None else None
+def _reference(mesh: Mesh, shape: Any) -> Pslg:
+    """The shape evaluated anew, as finely as the mesh says that its domain was.
+
+    By default each leaf has a deviation of its own, of which a domain remembers the largest: asking
+    for that one everywhere would give other chords, and other shells at sharp corners.
+    """
+    reference = evaluate(shape)
+    known = mesh.domain
+    if known is None or (known.deviation, known.snap) == (reference.deviation, reference.snap):
+        return reference
+    return evaluate(shape, deviation=known.deviation or None, snap=known.snap or None)
