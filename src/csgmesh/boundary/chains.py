@@ -70,8 +70,11 @@ def chains(
         raise EmptyDomainError(_nothing_left(program))
     marker, names = _markers(program, arrangement, kept)
     free = np.flatnonzero(marker < 0)
-    if region[0] >= 0 or len(free):
-        raise UnboundedDomainError(_reaches_out(program, arrangement, kept[free]))
+    if len(free):
+        raise UnboundedDomainError(_reaches_out(program, arrangement, kept[free[0]]))
+    if region[0] >= 0:
+        outer = np.flatnonzero((face[0::2] == 0) | (face[1::2] == 0))
+        raise UnboundedDomainError(_unbounded_around(program, arrangement, outer))
     return _joined(arrangement, kept, left[kept], right[kept], marker, names)
 
 
@@ -197,24 +200,31 @@ def _runs(n: int, follower: np.ndarray) -> np.ndarray:
 
 
 def _nothing_left(program: Program) -> str:
-    labels = [leaf.label for leaf in program.leaves[:6]]
-    more = ", …" if len(program.leaves) > 6 else ""
+    labels = [leaf.label for leaf in program.leaves]
+    return f"the domain is empty: nothing with an interior is left of {_some(labels)}"
+
+
+def _reaches_out(program: Program, arrangement: Arrangement, edge: int) -> str:
+    a = arrangement.points[arrangement.tail[edge]]
+    b = arrangement.points[arrangement.head[edge]]
+    x, y = 0.5 * (a + b)
+    leaves = [leaf.label for leaf in program.leaves if leaf.primitive.kind == "half_space"]
     return (
-        "the domain is empty: nothing with an interior is left of "
-        f"{', '.join(labels)}{more}"
+        f"the domain is unbounded beyond ({x:.6g}, {y:.6g}), where {_some(leaves)} "
+        "are not cut off; intersect the domain with a bounded shape"
     )
 
 
-def _reaches_out(program: Program, arrangement: Arrangement, free: np.ndarray) -> str:
-    where = ""
-    if len(free):
-        a = arrangement.points[arrangement.tail[free[0]]]
-        b = arrangement.points[arrangement.head[free[0]]]
-        x, y = 0.5 * (a + b)
-        where = f" beyond ({x:.6g}, {y:.6g})"
-    open_leaves = [leaf.label for leaf in program.leaves if leaf.primitive.kind == "half_space"]
-    reason = f"; unbounded leaves: {', '.join(open_leaves[:6])}" if open_leaves else ""
+def _unbounded_around(program: Program, arrangement: Arrangement, outer: np.ndarray) -> str:
+    on_outer = np.isin(arrangement.parent_edge, outer)
+    owners = np.unique(arrangement.pieces.leaf[arrangement.parent_piece[on_outer]])
+    leaves = [program.leaves[k].label for k in owners.tolist() if k < len(program.leaves)]
+    x, y = arrangement.points[arrangement.tail[outer[0]]]
     return (
-        f"the domain is unbounded{where}: a mesh needs a bounded one{reason}; "
-        "intersect it with a bounded shape"
+        f"the domain is unbounded: it holds everything around {_some(leaves)}, as near "
+        f"({x:.6g}, {y:.6g}); intersect it with a bounded shape"
     )
+
+
+def _some(labels: list[str]) -> str:
+    return ", ".join(labels[:6]) + (", …" if len(labels) > 6 else "")
