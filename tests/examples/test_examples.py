@@ -22,7 +22,7 @@ def run(tmp_path, monkeypatch, capsys):
 
     def runner(name):
         monkeypatch.chdir(tmp_path)
-        monkeypatch.setenv("MPLBACKEND", "Agg")
+        plt.switch_backend("Agg")
         runpy.run_path(str(EXAMPLES / f"{name}.py"), run_name="__main__")
         return capsys.readouterr().out, tmp_path
 
