@@ -29,7 +29,7 @@ def main() -> None:
             picture = f"{example.stem}.png"
             with Image.open(Path(folder) / picture) as image:
                 # A palette keeps the repository small.
-                image.convert("RGB").quantize(128).save(IMAGES / picture, optimize=True)
+                image.convert("RGB").quantize(256).save(IMAGES / picture, optimize=True)
 
 
 if __name__ == "__main__":
