@@ -150,3 +150,18 @@ def test_a_compiled_shape_keeps_its_value() -> None:
     disk.contains(SAMPLE)
     assert pickle.loads(pickle.dumps(disk)) == disk
     assert hash(disk.named("a")) != hash(disk)
+
+
+def test_numbers_beyond_all_floats_are_refused_by_name():
+    with pytest.raises(cm.ShapeError, match="radius must be finite"):
+        cm.Disk((0, 0), 10**400)
+
+
+@pytest.mark.parametrize("points", ["x", [["a", "b"]], [[1j, 0]]])
+def test_points_asked_about_must_be_numbers(points):
+    with pytest.raises(cm.ShapeError, match="contains: points must be an"):
+        cm.Disk((0, 0), 1).contains(points)
+
+
+def test_no_points_asked_about_are_no_answers():
+    assert cm.Disk((0, 0), 1).contains([]).shape == (0,)

@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from csgmesh.domain.names import name_flaw
 from csgmesh.errors import ShapeError
 
 #: Largest magnitude of a coordinate or size. Predicates multiply up to three differences of
@@ -21,9 +22,6 @@ LARGEST = 1e100
 #: Smallest size (radius, semi-axis, side): its square must not underflow.
 SMALLEST = 1e-100
 
-#: What a name must not hold: lookups read ``* ? [ ]`` as a glob, mesh files quote names with ``"``.
-FORBIDDEN_IN_NAMES = frozenset('*?[]"')
-
 
 def number(value: Any, what: str, where: str) -> float:
     """A finite float."""
@@ -31,7 +29,10 @@ def number(value: Any, what: str, where: str) -> float:
         value = value.item()
     if isinstance(value, bool | np.bool_) or not isinstance(value, Real):
         raise ShapeError(f"{where}: {what} must be a number; got {value!r}")
-    result = float(value)
+    try:
+        result = float(value)
+    except OverflowError:  # a whole number beyond all floats
+        result = math.inf
     if not math.isfinite(result):
         raise ShapeError(f"{where}: {what} must be finite; got {result!r}")
     if abs(result) > LARGEST:
@@ -108,7 +109,14 @@ def point_array(value: Any, what: str, where: str, dim: int = 2, least: int = 1)
 
 def query_points(value: Any, dim: int) -> np.ndarray:
     """Points asked about, as ``(n, dim)`` float64; a single point counts as one row."""
-    points = np.ascontiguousarray(value, dtype=np.float64)
+    try:
+        points = np.ascontiguousarray(value, dtype=np.float64)
+    except (TypeError, ValueError):
+        raise ShapeError(
+            f"contains: points must be an (n, {dim}) array of numbers; got {_shortened(value)}"
+        ) from None
+    if points.size == 0:
+        return np.zeros((0, dim))
     if points.ndim == 1 and points.size == dim:
         points = points.reshape(1, dim)
     if points.ndim != 2 or points.shape[1] != dim:
@@ -125,21 +133,10 @@ def query_points(value: Any, dim: int) -> np.ndarray:
 
 def name(value: Any, where: str) -> str:
     """A usable name: dot-separated components, none empty, no glob characters, no quotes."""
-    if not isinstance(value, str):
-        raise ShapeError(f"{where}: a name must be a string; got {value!r}")
-    bad = sorted(FORBIDDEN_IN_NAMES.intersection(value))
-    if bad or not value.isprintable():
-        found = " ".join(bad) if bad else "a control character"
-        raise ShapeError(
-            f'{where}: a name must not contain * ? [ ] " or control characters, which lookups '
-            f"and mesh files need; got {value!r} with {found}"
-        )
-    if any(not part or part != part.strip() for part in value.split(".")):
-        raise ShapeError(
-            f"{where}: a name must not be empty, nor have empty or blank-padded components between "
-            f"its dots; got {value!r}"
-        )
-    return value
+    flaw = name_flaw(value)
+    if flaw:
+        raise ShapeError(f"{where}: {flaw}")
+    return str(value)
 
 
 def _shortened(value: Any) -> str:

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
-from fractions import Fraction
+from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
 import numpy as np
 
 from csgmesh.domain.curves import Curves, cross
+from csgmesh.domain.names import name_flaw
 from csgmesh.domain.planar_map import PlanarMap
+from csgmesh.domain.rays import UpwardRays, sides
 from csgmesh.domain.report import Report
 from csgmesh.errors import InputError
 from csgmesh.spatial import Boxes
@@ -30,17 +31,17 @@ def pslg_fields(
     _refuse_crossings(xy, seg)
     found, face = _faces(xy, seg)
     region_names, region = _regions(xy, seg, found, face, holes, regions)
-    sides = np.column_stack([region[face[0::2]], region[face[1::2]]])
-    lost = np.flatnonzero((sides < 0).all(1))
+    between = np.column_stack([region[face[0::2]], region[face[1::2]]])
+    lost = np.flatnonzero((between < 0).all(1))
     if len(lost):
         x, y = xy[seg[lost[0], 0]]
         raise InputError(
             f"segment {lost[0]} at ({x:.6g}, {y:.6g}) lies outside the domain: it has no region on "
             "either side"
         )
-    turn = (sides[:, 0] < 0) | ((sides[:, 1] >= 0) & (sides[:, 1] < sides[:, 0]))
+    turn = (between[:, 0] < 0) | ((between[:, 1] >= 0) & (between[:, 1] < between[:, 0]))
     seg = np.where(turn[:, None], seg[:, ::-1], seg)
-    sides = np.where(turn[:, None], sides[:, ::-1], sides)
+    between = np.where(turn[:, None], between[:, ::-1], between)
     marker, boundary_names = _markers(len(seg), names)
     return {
         "points": xy,
@@ -48,7 +49,7 @@ def pslg_fields(
         "segment_curve": np.full(len(seg), -1),
         "segment_interval": np.tile([0.0, 1.0], (len(seg), 1)),
         "segment_marker": marker,
-        "segment_region": sides,
+        "segment_region": between,
         "point_marker": np.full(len(xy), -1),
         "boundary_names": boundary_names,
         "region_names": region_names,
@@ -56,41 +57,22 @@ def pslg_fields(
         "deviation": 0.0,
         "snap": coordinate_ulp(xy),
         "report": Report(),
-        "oracle": Winding(xy, seg, sides),
+        "oracle": FaceOracle(xy, seg, between),
     }
 
 
-class Winding:
-    """The oracle of a hand-made Pslg: the region on the near side of the first segment above."""
+class FaceOracle:
+    """The oracle of a hand-made Pslg: what lies below the first segment above a point."""
 
-    def __init__(self, points: np.ndarray, segments: np.ndarray, sides: np.ndarray) -> None:
-        a, b = points[segments[:, 0]], points[segments[:, 1]]
-        rightward = (a[:, 0] < b[:, 0])[:, None]
-        upright = a[:, 0] == b[:, 0]
-        self._a = np.where(rightward, a, b)[~upright]
-        self._b = np.where(rightward, b, a)[~upright]
-        self._below = np.where(rightward[:, 0], sides[:, 1], sides[:, 0])[~upright]
-        self._top = float(points[:, 1].max())
+    def __init__(self, points: np.ndarray, segments: np.ndarray, labels: np.ndarray) -> None:
+        self._rays = UpwardRays(points, segments)
+        rightward = points[segments[:, 0], 0] < points[segments[:, 1], 0]
+        self._below = np.where(rightward, labels[:, 1], labels[:, 0])
 
     def region(self, points: np.ndarray) -> np.ndarray:
         """Region of each point, (n,) int64, -1 outside."""
-        points = np.asarray(points, float)
-        out = np.full(len(points), -1)
-        if len(points) == 0:
-            return out
-        boxes = Boxes(np.minimum(self._a, self._b), np.maximum(self._a, self._b))
-        top = np.column_stack([points[:, 0], np.full(len(points), self._top)])
-        row, k = boxes.overlapping(np.minimum(points, top), np.maximum(points, top)).T
-        x, y = points[row].T
-        a, b = self._a[k], self._b[k]
-        height = a[:, 1] + (b[:, 1] - a[:, 1]) * ((x - a[:, 0]) / (b[:, 0] - a[:, 0]))
-        above = (a[:, 0] <= x) & (x < b[:, 0]) & (height >= y)
-        row, k, height = row[above], k[above], height[above]
-        slope = ((self._b - self._a)[k, 1]) / ((self._b - self._a)[k, 0])
-        order = np.lexsort((slope, height, row))
-        first = np.unique(row[order], return_index=True)[1]
-        out[row[order][first]] = self._below[k[order][first]]
-        return out
+        above = self._rays.first(np.asarray(points, float))
+        return np.where(above >= 0, self._below[above], -1)
 
 
 def _arrays(points: Any, segments: Any) -> tuple[np.ndarray, np.ndarray]:
@@ -141,21 +123,19 @@ def _refuse_crossings(xy: np.ndarray, seg: np.ndarray) -> None:
     a, b = xy[seg[:, 0]], xy[seg[:, 1]]
     i, j = Boxes(np.minimum(a, b), np.maximum(a, b)).pairs().T
     shared = (seg[i][:, :, None] == seg[j][:, None, :]).any((1, 2))
-    sides = np.column_stack(
+    side = np.column_stack(
         [
-            _sides(xy, seg[i, 0], seg[i, 1], seg[j, 0]),
-            _sides(xy, seg[i, 0], seg[i, 1], seg[j, 1]),
-            _sides(xy, seg[j, 0], seg[j, 1], seg[i, 0]),
-            _sides(xy, seg[j, 0], seg[j, 1], seg[i, 1]),
+            sides(a[i], b[i], a[j]),
+            sides(a[i], b[i], b[j]),
+            sides(a[j], b[j], a[i]),
+            sides(a[j], b[j], b[i]),
         ]
     )
-    meet = (sides[:, 0] * sides[:, 1] <= 0) & (sides[:, 2] * sides[:, 3] <= 0)
+    meet = (side[:, 0] * side[:, 1] <= 0) & (side[:, 2] * side[:, 3] <= 0)
     d_i, d_j = b[i] - a[i], b[j] - a[j]
     # Segments from a common point overlap if they are in line and point the same way.
-    flip = np.where(
-        (seg[i, 0] == seg[j, 0]) | (seg[i, 1] == seg[j, 1]), 1.0, -1.0
-    )
-    overlap = shared & (sides == 0).all(1) & (flip * (d_i * d_j).sum(1) > 0)
+    flip = np.where((seg[i, 0] == seg[j, 0]) | (seg[i, 1] == seg[j, 1]), 1.0, -1.0)
+    overlap = shared & (side == 0).all(1) & (flip * (d_i * d_j).sum(1) > 0)
     bad = np.flatnonzero(np.where(shared, overlap, meet))
     if len(bad):
         k = bad[0]
@@ -174,24 +154,6 @@ def _crossing(p: np.ndarray, r: np.ndarray, q: np.ndarray, s: np.ndarray) -> np.
     return p + np.clip(t, 0, 1) * r
 
 
-def _sides(xy: np.ndarray, a: np.ndarray, b: np.ndarray, c: np.ndarray) -> np.ndarray:
-    """Exact side of c relative to the line from a to b: -1, 0, 1."""
-    left = (xy[a, 0] - xy[c, 0]) * (xy[b, 1] - xy[c, 1])
-    right = (xy[a, 1] - xy[c, 1]) * (xy[b, 0] - xy[c, 0])
-    det = left - right
-    out = np.sign(det).astype(np.int64)
-    # Shewchuk 1997: the sign is certain beyond this bound.
-    bound = 3.3306690738754716e-16 * (np.abs(left) + np.abs(right))
-    for k in np.flatnonzero(np.abs(det) <= bound).tolist():
-        if c[k] in (a[k], b[k]):
-            out[k] = 0
-            continue
-        (ax, ay), (bx, by), (cx, cy) = (map(Fraction, xy[v[k]].tolist()) for v in (a, b, c))
-        exact = (ax - cx) * (by - cy) - (ay - cy) * (bx - cx)
-        out[k] = (exact > 0) - (exact < 0)
-    return out
-
-
 def _faces(xy: np.ndarray, seg: np.ndarray) -> tuple[PlanarMap, np.ndarray]:
     tail = seg.ravel()
     along = (xy[seg[:, ::-1]] - xy[seg]).reshape(-1, 2)
@@ -205,26 +167,16 @@ def _faces(xy: np.ndarray, seg: np.ndarray) -> tuple[PlanarMap, np.ndarray]:
 
 def _inside_of(xy: np.ndarray, seg: np.ndarray, found: PlanarMap) -> np.ndarray:
     """A half-edge directly above the highest point of each component, facing it; or -1."""
-    inside = np.full(found.n_components, -1)
     if found.n_components < 2:
-        return inside
+        return np.full(found.n_components, -1)
     v = xy[found.tail]
     order = np.lexsort((v[:, 0], -v[:, 1], found.component))
-    first = np.searchsorted(found.component[order], np.arange(found.n_components))
-    for component, (x, y) in enumerate(v[order[first]]):
-        k = np.flatnonzero(found.component[0::2] != component)
-        a, b = xy[seg[k, 0]], xy[seg[k, 1]]
-        span = (np.minimum(a[:, 0], b[:, 0]) <= x) & (x < np.maximum(a[:, 0], b[:, 0]))
-        k, a, b = k[span], a[span], b[span]
-        slope = (b[:, 1] - a[:, 1]) / (b[:, 0] - a[:, 0])
-        height = a[:, 1] + slope * (x - a[:, 0])
-        k, slope, height, rightward = (
-            z[height > y] for z in (k, slope, height, a[:, 0] < b[:, 0])
-        )
-        if len(k):
-            best = np.lexsort((slope, height))[0]
-            inside[component] = 2 * k[best] + rightward[best]
-    return inside
+    highest = np.searchsorted(found.component[order], np.arange(found.n_components))
+    above = UpwardRays(xy, seg).first(
+        v[order[highest]], np.arange(found.n_components), found.component[0::2]
+    )
+    rightward = xy[seg[above, 0], 0] < xy[seg[above, 1], 0]
+    return np.where(above >= 0, 2 * above + rightward, -1)
 
 
 def _regions(
@@ -236,34 +188,47 @@ def _regions(
     regions: Mapping[str, Any] | None,
 ) -> tuple[tuple[str, ...], np.ndarray]:
     """Region names, and the region of each face."""
-    n_faces = int(face.max()) + 1
-    sides = np.column_stack([face[0::2], face[1::2]])
-    locate = Winding(xy, seg, sides)
-    hole_points = _seeds("holes", holes)
-    region = np.full(n_faces, 0)
-    region[0] = -1
+    locate = FaceOracle(xy, seg, np.column_stack([face[0::2], face[1::2]]))
+    region = np.full(int(face.max()) + 1, 0)
     names: tuple[str, ...] = ("domain",)
+    hole_points = _seeds("holes", holes)
     if regions is not None:
-        names = tuple(regions)
-        if not names:
-            raise InputError("regions must not be empty")
-        region[:] = -1
-        for number, (name, seeds) in enumerate(regions.items()):
-            for point in _seeds(f"regions[{name!r}]", seeds):
-                at = _face_at(locate, point, f"point of region {name!r}")
-                if region[at] not in (-1, number):
-                    raise InputError(
-                        f"regions {names[region[at]]!r} and {name!r} claim the same face at "
-                        f"{tuple(point.tolist())}"
-                    )
-                region[at] = number
+        names = _claim(region, locate, regions)
     elif len(hole_points) == 0:
         region[_depths(found, face) % 2 == 0] = -1
-    for point in hole_points:
-        region[_face_at(locate, point, "hole point")] = -1
+    region[0] = -1
+    region[_faces_at(locate, hole_points, lambda _: "hole point")] = -1
     if (region < 0).all():
         raise InputError("the domain is empty: no closed loop of segments bounds a region")
     return names, region
+
+
+def _claim(region: np.ndarray, locate: FaceOracle, regions: Mapping[str, Any]) -> tuple[str, ...]:
+    """Write the region of each face that holds a point of one; return the names."""
+    if not isinstance(regions, Mapping) or not regions:
+        raise InputError(
+            f"regions must be a mapping of names to points, such as {{'rock': (0, 0)}}; "
+            f"got {regions!r}"
+        )
+    names = tuple(regions)
+    _refuse_names("regions", names)
+    seeds = [_seeds(f"regions[{name!r}]", points) for name, points in regions.items()]
+    for name, points in zip(names, seeds, strict=True):
+        if not len(points):
+            raise InputError(f"regions[{name!r}] needs a point at least, got none")
+    owner = np.repeat(np.arange(len(names)), [len(points) for points in seeds])
+    points = np.concatenate(seeds)
+    at = _faces_at(locate, points, lambda k: f"point of region {names[owner[k]]!r}")
+    region[:] = -1
+    region[at] = owner
+    claimed_twice = np.flatnonzero(region[at] != owner)
+    if len(claimed_twice):
+        k = claimed_twice[0]
+        raise InputError(
+            f"regions {names[owner[k]]!r} and {names[region[at[k]]]!r} claim the same face at "
+            f"{tuple(points[k].tolist())}"
+        )
+    return names
 
 
 def _depths(found: PlanarMap, face: np.ndarray) -> np.ndarray:
@@ -295,7 +260,10 @@ def _depths(found: PlanarMap, face: np.ndarray) -> np.ndarray:
 
 
 def _seeds(what: str, given: Any) -> np.ndarray:
-    points = np.asarray(given, dtype=float)
+    try:
+        points = np.asarray(given, dtype=float)
+    except (TypeError, ValueError):
+        raise InputError(f"{what} must be points of shape (k, 2), got {given!r}") from None
     if points.size == 0:
         return np.zeros((0, 2))
     points = np.atleast_2d(points)
@@ -304,24 +272,51 @@ def _seeds(what: str, given: Any) -> np.ndarray:
     return points
 
 
-def _face_at(locate: Winding, point: np.ndarray, what: str) -> int:
-    at = int(locate.region(point[None])[0])
-    if at <= 0:
-        raise InputError(f"{what} {tuple(point.tolist())} lies outside every loop of segments")
+def _faces_at(locate: FaceOracle, points: np.ndarray, what: Callable[[int], str]) -> np.ndarray:
+    at = locate.region(points)
+    outside = np.flatnonzero(at <= 0)
+    if len(outside):
+        k = int(outside[0])
+        raise InputError(
+            f"{what(k)} {tuple(points[k].tolist())} lies outside every loop of segments"
+        )
     return at
+
+
+def _refuse_names(what: str, names: Iterable[Any]) -> None:
+    for name in names:
+        flaw = name_flaw(name)
+        if flaw:
+            raise InputError(f"{what}: {flaw}")
 
 
 def _markers(
     n: int, names: Mapping[str, Iterable[int]] | None
 ) -> tuple[np.ndarray, tuple[tuple[str, ...], ...]]:
-    given: list[list[str]] = [[] for _ in range(n)]
-    for name, numbers in (names or {}).items():
-        if not isinstance(name, str) or not name:
-            raise InputError(f"names must be non-empty strings, got {name!r}")
-        for k in np.asarray(list(numbers), dtype=np.int64).tolist():
-            if not 0 <= k < n:
-                raise InputError(f"names[{name!r}] must hold segment numbers below {n}, got {k}")
-            given[k].append(name)
     from csgmesh.domain.pslg import marker_table
 
+    if names is not None and not isinstance(names, Mapping):
+        raise InputError(
+            f"names must be a mapping of names to segment numbers, such as {{'inlet': [0, 1]}}; "
+            f"got {names!r}"
+        )
+    _refuse_names("names", names or ())
+    given: list[list[str]] = [[] for _ in range(n)]
+    for name, numbers in (names or {}).items():
+        for k in _segment_numbers(name, numbers, n):
+            given[k].append(name)
     return marker_table([tuple(dict.fromkeys(g)) or (UNNAMED,) for g in given])
+
+
+def _segment_numbers(name: str, numbers: Any, n: int) -> list[int]:
+    listed = list(numbers) if isinstance(numbers, Iterable) else [numbers]
+    array = np.asarray(listed) if listed else np.zeros(0, np.int64)
+    if array.ndim != 1 or not np.issubdtype(array.dtype, np.integer):
+        raise InputError(f"names[{name!r}] must hold segment numbers, got {numbers!r}")
+    out = np.flatnonzero((array < 0) | (array >= n))
+    if len(out):
+        raise InputError(
+            f"names[{name!r}] must hold segment numbers below {n}, got {array[out[0]]}"
+        )
+    numbers_of: list[int] = array.tolist()
+    return numbers_of

@@ -5,12 +5,44 @@ from __future__ import annotations
 import difflib
 import fnmatch
 from collections.abc import Iterable, Sequence
+from typing import Any
 
 import numpy as np
 
 from csgmesh.errors import NameLookupError
 
 _GLOB = frozenset("*?[")
+
+#: What a name must not hold: lookups read ``* ? [ ]`` as a glob, mesh files quote names with ``"``.
+_FORBIDDEN = frozenset('*?[]"')
+
+
+def name_flaw(value: Any) -> str | None:
+    """The rule that a name breaks and the name; None for a usable name.
+
+    A name has components between dots, none of them empty or blank-padded.
+
+    Examples
+    --------
+    >>> name_flaw("plate.left")
+    >>> name_flaw(5)
+    'a name must be a string; got 5'
+    """
+    if not isinstance(value, str):
+        return f"a name must be a string; got {value!r}"
+    bad = sorted(_FORBIDDEN.intersection(value))
+    if bad or not value.isprintable():
+        found = " ".join(bad) if bad else "a control character"
+        return (
+            'a name must not contain * ? [ ] " or control characters, which lookups and mesh files '
+            f"need; got {value!r} with {found}"
+        )
+    if any(not part or part != part.strip() for part in value.split(".")):
+        return (
+            "a name must not be empty, nor have empty or blank-padded components between its dots; "
+            f"got {value!r}"
+        )
+    return None
 
 
 def find_names(pattern: str, names: Iterable[str], *, what: str = "name") -> tuple[str, ...]:

@@ -67,9 +67,7 @@ class PlanarMap:
         n_cycles, cycle = _components(n, np.arange(n), follow)
         used, compact = np.unique(tail, return_inverse=True)
         n_components, label = _components(len(used), compact[0::2], compact[1::2])
-        return PlanarMap(
-            tail, follow, cycle, label[compact], n_cycles, n_components, len(used)
-        )
+        return PlanarMap(tail, follow, cycle, label[compact], n_cycles, n_components, len(used))
 
     def is_planar(self) -> bool:
         """Whether Euler's formula holds, so that the rotation system can be drawn in the plane."""

@@ -184,10 +184,13 @@ class Pslg:
         return out
 
     def __repr__(self) -> str:
-        names = ", ".join(self.names[:6]) + (", …" if len(self.names) > 6 else "")
+        regions, boundaries = (
+            ", ".join(names[:6]) + (", …" if len(names) > 6 else "")
+            for names in (self.region_names, self.names)
+        )
         return (
             f"<Pslg: {self.n_points} points, {self.n_segments} segments, "
-            f"regions {', '.join(self.region_names)}; boundaries {names}>"
+            f"regions {regions}; boundaries {boundaries}>"
         )
 
     def _centre(self) -> np.ndarray:
