@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+import math
+import reprlib
+from numbers import Real
 from typing import Any
 
 from csgmesh.domain.pslg import Pslg
+from csgmesh.errors import InputError, ShapeError
 
 __all__ = ["evaluate"]
 
@@ -52,8 +56,23 @@ def evaluate(shape: Any, deviation: float | None = None, snap: float | None = No
     >>> half.names
     ('disk', 'half_space')
     """
+    for name, value in (("deviation", deviation), ("snap", snap)):
+        if value is not None and not _is_positive(value):
+            raise ShapeError(f"{name} must be a positive, finite number; got {value!r}")
     if isinstance(shape, Pslg):
         return shape
     from csgmesh.boundary.planar import evaluate_plane
+    from csgmesh.csg import Embed, Regions, Shape
 
+    if not isinstance(shape, Shape | Regions | Embed):
+        raise InputError(
+            "a shape must be a Shape, Regions, Embed or Pslg, such as Box((0, 0), (1, 1)); "
+            f"got {reprlib.repr(shape)}"
+        )
     return evaluate_plane(shape, deviation, snap)
+
+
+def _is_positive(value: Any) -> bool:
+    if isinstance(value, bool) or not isinstance(value, Real):
+        return False
+    return 0 < value < math.inf

@@ -11,9 +11,13 @@ from __future__ import annotations
 import numpy as np
 
 from csgmesh.boundary.pieces import Pieces
-from csgmesh.domain.curves import Curves, cross
+from csgmesh.domain.curves import CUBIC, Curves, cross
 
 _DEPTH = 60
+
+#: Curves that cross at a smaller angle (radians) enclose less than the snap distance nearby, and
+#: Newton's method finds no more than a stretch of them: they count as touching.
+_TANGENT = 1e-6
 _SAMPLES = np.linspace(0.0, 1.0, 9)
 
 
@@ -44,6 +48,9 @@ def _coincide(pieces: Pieces, pairs: np.ndarray, snap: float) -> np.ndarray:
     local = pieces.local
     a, b = pieces.source[i], pieces.source[j]
     same = (local.kind[a] == local.kind[b]) & (local.data[a] == local.data[b]).all(1)
+    # Two stretches of one cubic may cross: it can make a loop.
+    apart = (pieces.lo[i] >= pieces.hi[j]) | (pieces.lo[j] >= pieces.hi[i])
+    same &= ~(apart & (local.kind[a] == CUBIC))
     # Reversed copies and curves equal up to rounding: compare samples over the overlap.
     at = np.flatnonzero(~same)
     ia, jb = i[at], j[at]
@@ -153,16 +160,62 @@ def _polish(
     crossing = _newton_crossing(local, i, j, t.copy(), lo, hi)
     gap = np.hypot(*(local.points(i, crossing[:, 0]) - local.points(j, crossing[:, 1])).T)
     crossed = (gap <= 1e-14) & (np.abs(crossing - t) <= 2 * width).all(1)
+    d_i, d_j = local.derivatives(i, crossing[:, 0]), local.derivatives(j, crossing[:, 1])
+    crossed &= np.abs(cross(d_i, d_j)) > _TANGENT * np.hypot(*d_i.T) * np.hypot(*d_j.T)
     best = crossing
     k = np.flatnonzero(~crossed)
     best[k] = _nearest(local, i[k], j[k], t[k], lo[k], hi[k])
-    # Neighbouring leaves of the subdivision find the same point: keep one of each.
-    point = local.points(i, best[:, 0])
-    cell = np.floor(point / (snap / 2)).astype(np.int64)
-    order = np.lexsort((~crossed, cell[:, 1], cell[:, 0], rows[:, 1], rows[:, 0]))
-    key = np.column_stack([rows, cell])[order]
-    first = order[np.r_[True, (key[1:] != key[:-1]).any(1)][: len(order)]]
-    return rows[first], best[first]
+    first = _one_of_each(local, i, j, rows, best, crossed, snap)
+    rows, best, crossed = rows[first], best[first], crossed[first]
+    contact = _slides_to_common_end(pieces, rows, best, snap) & ~crossed
+    return rows[~contact], best[~contact]
+
+
+def _one_of_each(
+    local: Curves,
+    i: np.ndarray,
+    j: np.ndarray,
+    rows: np.ndarray,
+    t: np.ndarray,
+    crossed: np.ndarray,
+    snap: float,
+) -> np.ndarray:
+    """One candidate for each crossing and for each stretch within the snap distance.
+
+    Neighbouring parameter boxes find the same crossing, and a touching is found all along the
+    stretch on which the curves are within the snap distance: its closest point stands for it.
+    """
+    p, q = local.points(i, t[:, 0]), local.points(j, t[:, 1])
+    order = np.lexsort((t[:, 0], rows[:, 1], rows[:, 0]))
+    a, b = order[:-1], order[1:]
+    same = (rows[a] == rows[b]).all(1)
+    equal = same & (np.hypot(*(p[a] - p[b]).T) <= snap / 2)
+    k = np.flatnonzero(same & ~equal & ~(crossed[a] & crossed[b]))
+    middle = 0.5 * (t[a[k]] + t[b[k]])
+    gap = local.points(i[a[k]], middle[:, 0]) - local.points(j[a[k]], middle[:, 1])
+    joined = equal
+    joined[k] = np.hypot(*gap.T) <= snap
+    stretch = np.r_[0, np.cumsum(~joined)] if len(order) else order
+    rank = np.lexsort((np.hypot(*(p - q).T)[order], ~crossed[order], stretch))
+    first = np.r_[True, stretch[rank][1:] != stretch[rank][:-1]][: len(order)]
+    return np.sort(order[rank[first]])
+
+
+def _slides_to_common_end(
+    pieces: Pieces, rows: np.ndarray, t: np.ndarray, snap: float
+) -> np.ndarray:
+    """Which touchings belong to a common end: between, the pieces keep within the snap distance."""
+    local = pieces.local
+    i, j = pieces.source[rows].T
+    out = np.zeros(len(rows), bool)
+    for end_i in (pieces.lo, pieces.hi):
+        for end_j in (pieces.lo, pieces.hi):
+            e, f = end_i[rows[:, 0]], end_j[rows[:, 1]]
+            k = np.flatnonzero((local.points(i, e) == local.points(j, f)).all(1))
+            p = local.points(i[k], 0.5 * (e[k] + t[k, 0]))
+            s = local.project(j[k], p, np.minimum(f, t[:, 1])[k], np.maximum(f, t[:, 1])[k])
+            out[k] |= np.hypot(*(local.points(j[k], s) - p).T) <= snap
+    return out
 
 
 def _newton_crossing(
@@ -181,12 +234,29 @@ def _newton_crossing(
 def _nearest(
     local: Curves, i: np.ndarray, j: np.ndarray, t: np.ndarray, lo: np.ndarray, hi: np.ndarray
 ) -> np.ndarray:
-    """Closest approach near `t`: alternating projections converge at every kind of contact."""
+    """Closest approach near `t`: parallel tangents, joined at a right angle, by Newton's method.
+
+    Alternating projections lead there and serve where the curvatures agree, and Newton's fails.
+    """
     reach = 2.0**-4 * (hi - lo)
     low, high = np.maximum(t - reach, lo), np.minimum(t + reach, hi)
     for _ in range(8):
         t[:, 1] = local.project(j, local.points(i, t[:, 0]), low[:, 1], high[:, 1])
         t[:, 0] = local.project(i, local.points(j, t[:, 1]), low[:, 0], high[:, 0])
+    near = t.copy()
+    for _ in range(8):
+        r = local.points(i, t[:, 0]) - local.points(j, t[:, 1])
+        di, dj = local.derivatives(i, t[:, 0]), local.derivatives(j, t[:, 1])
+        ddi, ddj = local.second_derivatives(i, t[:, 0]), local.second_derivatives(j, t[:, 1])
+        f, g = (r * di).sum(1), cross(di, dj)
+        f_t, f_s = (di * di).sum(1) + (r * ddi).sum(1), -(di * dj).sum(1)
+        g_t, g_s = cross(ddi, dj), cross(di, ddj)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            step = np.column_stack([f * g_s - g * f_s, g * f_t - f * g_t])
+            step /= (f_t * g_s - f_s * g_t)[:, None]
+        t = np.clip(t - np.where(np.isfinite(step), step, 0.0), low, high)
+    before = local.points(i, near[:, 0]) - local.points(j, near[:, 1])
+    after = local.points(i, t[:, 0]) - local.points(j, t[:, 1])
+    worse = np.hypot(*after.T) > np.hypot(*before.T) + 1e-16
+    t[worse] = near[worse]
     return t
-
-

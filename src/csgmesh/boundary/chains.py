@@ -210,8 +210,8 @@ def _reaches_out(program: Program, arrangement: Arrangement, edge: int) -> str:
     x, y = 0.5 * (a + b)
     leaves = [leaf.label for leaf in program.leaves if leaf.primitive.kind == "half_space"]
     return (
-        f"the domain is unbounded beyond ({x:.6g}, {y:.6g}), where {_some(leaves)} "
-        "are not cut off; intersect the domain with a bounded shape"
+        f"the domain is unbounded beyond ({x:.6g}, {y:.6g}), where nothing cuts off "
+        f"{_some(leaves)}; intersect the domain with a bounded shape"
     )
 
 

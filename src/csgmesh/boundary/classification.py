@@ -113,8 +113,7 @@ class _Membership:
         face = order[place[wrong[0]]]
         own = arrangement.pieces.leaf[arrangement.parent_piece] == bad
         edges = arrangement.parent_edge[own]
-        around = edges[(left[edges] == face)]
-        where = arrangement.points[arrangement.tail[(around if len(around) else edges)[0]]]
+        where = arrangement.points[_crossing(arrangement, edges, edges[left[edges] == face])]
         raise ShapeError(
             f"{program.leaves[bad].label} crosses or overlaps itself near "
             f"({where[0]:.6g}, {where[1]:.6g}): the boundary of a polygon must not; use Outline, "
@@ -182,3 +181,11 @@ class _Membership:
             # Flips of a leaf alternate: in, out, in, out.
             np.add.at(change, place, 1 - 2 * (offset % 2))
         return np.cumsum(change[:-1])
+
+
+def _crossing(arrangement: Arrangement, edges: np.ndarray, around: np.ndarray) -> int:
+    """A vertex of the given edges around a face, if possible one where the leaf meets itself."""
+    ends = np.concatenate([arrangement.tail[edges], arrangement.head[edges]])
+    busy = np.bincount(ends, minlength=len(arrangement.vertices)) > 2
+    near = np.concatenate([arrangement.tail[around], arrangement.head[around], ends])
+    return int(near[np.argmax(busy[near])])

@@ -120,8 +120,6 @@ def _without_conflicts(
 
 
 def _chord_counts(arrangement: Arrangement, chains: Chains, deviation: float | None) -> np.ndarray:
-    if deviation is not None and not (np.isfinite(deviation) and deviation > 0):
-        raise ShapeError(f"deviation must be positive and finite, got {deviation!r}")
     pieces = arrangement.pieces
     width = chains.t1 - chains.t0
     bend = pieces.curves.second_derivative_bounds()[chains.source]

@@ -37,6 +37,11 @@ class Frame:
     @staticmethod
     def around(lo: np.ndarray, hi: np.ndarray) -> Frame:
         """The frame of a domain with the given box."""
+        if not (np.abs([lo, hi]) <= LARGEST).all():
+            raise EvaluationError(
+                f"coordinates must not exceed {LARGEST:g} in size; the shape's transformations "
+                f"carry it from {lo.tolist()} to {hi.tolist()}"
+            )
         extent = hi - lo
         size = float(extent.max())
         if not size > 0:
@@ -114,8 +119,6 @@ def default_snap(frame: Frame, snap: float | None) -> float:
     least = coordinate_ulp(frame.lo, frame.hi)
     if snap is None:
         return max(SNAP_SHARE * frame.diagonal, least)
-    if not (np.isfinite(snap) and snap > 0):
-        raise ShapeError(f"snap must be positive and finite, got {snap!r}")
     return max(float(snap), least)
 
 

@@ -15,8 +15,12 @@ from csgmesh.domain.planar_map import PlanarMap
 from csgmesh.errors import EvaluationError
 from csgmesh.spatial import Boxes
 
-#: Tangents closer than this (radians) are told apart by position, not by their computed angle.
-_TIE = 1e-5
+#: Tangents closer than this (radians) are told apart by position, not by their computed angle:
+#: where curves touch, a vertex within the snap distance of the contact turns them by its root.
+_TIE = 1e-2
+
+#: Heights closer than this may be rounded out of order.
+_SAME_HEIGHT = 1e-5
 
 
 def half_edge_tails(arrangement: Arrangement) -> np.ndarray:
@@ -244,7 +248,7 @@ def _settle_heights(
         inside = row < len(component)
         running, row = running[inside], row[inside]
         close = (component[row] == component[first[running]]) & (
-            height[first[running]] - height[row] <= _TIE
+            height[first[running]] - height[row] <= _SAME_HEIGHT
         )
         running, row = running[close], row[close]
         a, b = edge[best[running]], edge[row]
