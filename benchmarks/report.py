@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import platform
 import statistics
 import time
@@ -37,7 +38,14 @@ def machine(*packages: str) -> dict[str, Any]:
             found[package] = version(package)
         except PackageNotFoundError:
             continue
-    return {"processor": processor, "python": platform.python_version(), "versions": found}
+    return {
+        "processor": processor,
+        "cores": os.cpu_count(),
+        # Above the number of cores the times are those of a machine that others use as well.
+        "load average": [round(x, 2) for x in os.getloadavg()],
+        "python": platform.python_version(),
+        "versions": found,
+    }
 
 
 def save(name: str, rows: list[dict[str, Any]], *packages: str) -> None:

@@ -1,0 +1,118 @@
+"""The same meshing tasks for csgmesh and for its peers, Triangle and Gmsh (extra ``peers``).
+
+Each function takes a domain and returns points and triangles, which is what is timed: the whole
+call from arrays to arrays.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+import csgmesh as cm
+from csgmesh.domain import Pslg
+
+Arrays = tuple[np.ndarray, np.ndarray]
+
+
+def ours(domain: Pslg, size: Any, min_angle: float = 30.0) -> Arrays:
+    """csgmesh with default options."""
+    mesh = cm.DelaunayRefinement(min_angle=min_angle).generate(domain, size)
+    return mesh.points, mesh.cells["triangle"]
+
+
+def for_triangle(domain: Pslg) -> dict[str, np.ndarray]:
+    """A domain's chords; the package refuses read-only arrays."""
+    return {"vertices": domain.points.copy(), "segments": domain.segments.astype(np.int32)}
+
+
+def triangle_package(domain: Pslg, area: float, min_angle: float = 30.0) -> Arrays:
+    """Triangle under an area bound."""
+    import triangle
+
+    out = triangle.triangulate(for_triangle(domain), f"pq{min_angle:g}a{area:.17f}Q")
+    return out["vertices"], out["triangles"]
+
+
+def triangle_graded(
+    domain: Pslg, size: Callable[[np.ndarray], np.ndarray], min_angle: float = 30.0
+) -> Arrays:
+    """Triangle refining its own meshes under areas from the size at each centroid."""
+    import triangle
+
+    out = triangle.triangulate(
+        for_triangle(domain),
+        f"pq{min_angle:g}Q",
+    )
+    while True:
+        corners = out["vertices"][out["triangles"]]
+        wanted = equilateral(size(corners.mean(axis=1)))
+        u, v = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
+        area = 0.5 * (u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0])
+        # Sizes at new centroids differ a little: stop when next to nothing would be split.
+        if (area > 1.5 * wanted).mean() < 1e-3:
+            return out["vertices"], out["triangles"]
+        keep = {k: out[k] for k in ("vertices", "segments", "triangles")}
+        out = triangle.triangulate(
+            keep | {"triangle_max_area": wanted[:, None]}, f"rpq{min_angle:g}aQ"
+        )
+
+
+def gmsh_frontal(domain: Pslg, size: float) -> Arrays:
+    """Gmsh's frontal-Delaunay algorithm, on the chords."""
+    import gmsh
+
+    gmsh.initialize()
+    gmsh.option.setNumber("General.Terminal", 0)
+    gmsh.option.setNumber("General.NumThreads", 1)
+    gmsh.option.setNumber("Mesh.Algorithm", 6)
+    geo = gmsh.model.geo
+    for k, (x, y) in enumerate(domain.points.tolist()):
+        geo.addPoint(x, y, 0.0, size, k + 1)
+    for k, (a, b) in enumerate(domain.segments.tolist()):
+        geo.addLine(a + 1, b + 1, k + 1)
+    chain = _in_order(domain.segments)
+    geo.addCurveLoop((chain + 1).tolist(), 1)
+    geo.addPlaneSurface([1], 1)
+    geo.synchronize()
+    gmsh.model.mesh.generate(2)
+    tags, xyz, _ = gmsh.model.mesh.getNodes()
+    _, nodes = gmsh.model.mesh.getElementsByType(2)
+    gmsh.finalize()
+    number = np.zeros(int(tags.max()) + 1, np.int64)
+    number[tags.astype(np.int64)] = np.arange(len(tags))
+    return xyz.reshape(-1, 3)[:, :2], number[nodes.astype(np.int64)].reshape(-1, 3)
+
+
+def _in_order(segments: np.ndarray) -> np.ndarray:
+    """Segments of a single loop, one after the other."""
+    starting_at = {int(a): k for k, (a, _) in enumerate(segments)}
+    chain = [0]
+    while len(chain) < len(segments):
+        chain.append(starting_at[int(segments[chain[-1], 1])])
+    return np.array(chain)
+
+
+def equilateral(edge: Any) -> Any:
+    """Area of an equilateral triangle."""
+    return np.sqrt(3.0) / 4.0 * edge**2
+
+
+def measures(points: np.ndarray, cells: np.ndarray, size: Any = None) -> dict[str, float]:
+    """Angles of a mesh, and how many of its edges are about as long as wanted."""
+    quality = cm.quality(cm.Mesh(points, {"triangle": cells}))
+    found = {
+        "triangles": len(cells),
+        "min angle": float(quality.min_angle.min()),
+        "mean of min angles": float(quality.min_angle.mean()),
+    }
+    if size is not None:
+        ends = np.sort(np.concatenate([cells[:, [0, 1]], cells[:, [1, 2]], cells[:, [2, 0]]]), 1)
+        ends = np.unique(ends[:, 0].astype(np.int64) * len(points) + ends[:, 1])
+        a, b = points[ends // len(points)], points[ends % len(points)]
+        ratio = np.hypot(*(b - a).T) / size(0.5 * (a + b))
+        found["mean edge / h"] = float(ratio.mean())
+        found["share in [0.6, 1.6] h"] = float(((ratio >= 0.6) & (ratio <= 1.6)).mean())
+    return found

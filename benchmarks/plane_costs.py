@@ -1,0 +1,149 @@
+"""Sections of ``plane.py`` about what else a user waits or pays for."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+import tempfile
+import time
+import tracemalloc
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from plane_speed import PER_AREA, square
+from report import median_seconds
+
+import csgmesh as cm
+
+Rows = list[dict[str, Any]]
+ROOT = Path(__file__).parents[1]
+FORMATS = ("npz", "vtu", "msh")
+#: Distinct glyphs that stand for 10,000 small domains.
+GLYPHS = 400
+
+
+def small(counts: list[int]) -> Rows:
+    """Thousands of small domains one after the other, evaluation apart."""
+    from matplotlib.font_manager import FontProperties
+    from matplotlib.textpath import TextPath
+
+    font = FontProperties(family="DejaVu Sans")
+    domains = []
+    for code in range(0x21, 0x21 + 4 * GLYPHS):
+        path = TextPath((0, 0), chr(code), size=64, prop=font)
+        if len(path.codes) and len(domains) < GLYPHS:
+            domains.append(cm.evaluate(cm.Outline.from_path(path.vertices, path.codes)))
+    rounds = max(counts) // 100 // len(domains)
+    rows = []
+    for angle in (20.0, 30.0):
+        mesher = cm.DelaunayRefinement(min_angle=angle)
+        cells = sum(mesher.generate(domain).n_cells for domain in domains)
+        start = time.perf_counter()
+        for _ in range(max(rounds, 1)):
+            for domain in domains:
+                mesher.generate(domain)
+        seconds = time.perf_counter() - start
+        rows.append({
+            "case": f"{max(rounds, 1) * len(domains)} glyphs at {angle:g} degrees",
+            "triangles each": cells / len(domains),
+            "ms each": 1e3 * seconds / max(rounds, 1) / len(domains),
+            "load": round(os.getloadavg()[0], 1),
+        })  # fmt: skip
+    return rows
+
+
+def memory(counts: list[int]) -> Rows:
+    """Peak of numpy's allocations in a second call, beyond the result."""
+    domain = cm.evaluate(square())
+    rows = []
+    for n in counts:
+        h = float(np.sqrt(PER_AREA / n))
+        for case, size in (("uniform", h), ("callable", lambda p, h=h: np.full(len(p), h))):
+            cm.generate(domain, size=size)
+            tracemalloc.start()
+            mesh = cm.generate(domain, size=size)
+            kept, peak = tracemalloc.get_traced_memory()
+            tracemalloc.stop()
+            rows.append({
+                "case": f"{case}, {n:.0e} triangles",
+                "bytes a triangle beyond the result": (peak - kept) / mesh.n_cells,
+                "result, bytes a triangle": kept / mesh.n_cells,
+            })  # fmt: skip
+    return rows
+
+
+def cold(counts: list[int]) -> Rows:
+    """Compiling for the first mesh ever, and the command line afterwards."""
+    rows = []
+    python = sys.executable
+    mesh = "import csgmesh as cm; cm.generate(cm.Disk((0, 0), 1))"
+    with tempfile.TemporaryDirectory() as folder:
+        environment = {**os.environ, "NUMBA_CACHE_DIR": str(Path(folder) / "cache")}
+        output = str(Path(folder) / "plate.msh")
+        plate = [str(ROOT / "examples" / "plate.yaml"), "-o", output]
+        run = partial(_run, environment=environment)
+        first = run([python, "-c", mesh])
+        again = median_seconds(lambda: run([python, "-c", mesh]), 5)
+        run([python, "-m", "csgmesh", "mesh", *plate])
+        command = median_seconds(lambda: run([python, "-m", "csgmesh", "mesh", *plate]), 5)
+    help_text = median_seconds(lambda: _run([python, "-m", "csgmesh", "--help"], os.environ), 5)
+    for what, seconds in (
+        ("first mesh, nothing compiled yet", first),
+        ("the same, compiled", again),
+        ("of which compiling", first - again),
+        ("csgmesh mesh examples/plate.yaml, compiled", command),
+        ("csgmesh --help", help_text),
+    ):
+        load = round(os.getloadavg()[0], 1)
+        rows.append({"what": what, "seconds": seconds, "load": load})
+    return rows
+
+
+def _run(command: list[str], environment: Any) -> float:
+    start = time.perf_counter()
+    subprocess.run(command, env=environment, check=True, capture_output=True)
+    return time.perf_counter() - start
+
+
+def files(counts: list[int]) -> Rows:
+    """Writing and reading."""
+    mesh = cm.generate(square(), size=float(np.sqrt(PER_AREA / max(counts))))
+    rows = []
+    with tempfile.TemporaryDirectory() as folder:
+        for suffix in FORMATS:
+            path = Path(folder) / f"mesh.{suffix}"
+            rows.append({
+                "format": suffix,
+                "triangles": mesh.n_cells,
+                "write s": median_seconds(lambda p=path: cm.write(p, mesh), 5),
+                "read s": median_seconds(lambda p=path: cm.read(p), 3),
+                "bytes": path.stat().st_size,
+                "load": round(os.getloadavg()[0], 1),
+            })  # fmt: skip
+    return rows
+
+
+def contains(counts: list[int]) -> Rows:
+    """Membership in a tree of 100 leaves."""
+    rng = np.random.default_rng(3)
+    leaves: list[cm.Shape] = []
+    for k in range(100):
+        x, y = rng.random(2).tolist()
+        r = float(rng.uniform(0.02, 0.1))
+        leaves.append(cm.Disk((x, y), r) if k % 2 else cm.Box((x, y), (x + r, y + r)))
+    chain = leaves[0]
+    for k, leaf in enumerate(leaves[1:]):
+        chain = chain - leaf if k % 4 == 3 else chain | leaf
+    points = rng.random((max(counts), 2))
+    rows = []
+    for case, tree in (("union", cm.union(leaves)), ("chain of | and -", chain)):
+        rows.append({
+            "case": f"{case}, 100 leaves",
+            "points": len(points),
+            "seconds": median_seconds(partial(tree.contains, points), 5),
+            "load": round(os.getloadavg()[0], 1),
+        })  # fmt: skip
+    return rows
