@@ -47,7 +47,7 @@ def test_an_outline_may_cross_itself():
 @pytest.mark.parametrize("argument", ["deviation", "snap"])
 @pytest.mark.parametrize("value", [0.0, -1.0, np.nan, np.inf])
 def test_tolerances_must_be_positive(argument, value):
-    with pytest.raises(cm.ShapeError, match=rf"{argument} must be positive and finite, got"):
+    with pytest.raises(cm.ShapeError, match=rf"{argument} must be a positive, finite number; got"):
         cm.evaluate(cm.Disk((0, 0), 1), **{argument: value})
 
 
