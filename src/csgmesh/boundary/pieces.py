@@ -7,6 +7,7 @@ from typing import cast
 
 import numpy as np
 
+from csgmesh.csg.checks import LARGEST
 from csgmesh.csg.primitives.half_space import HalfSpace
 from csgmesh.csg.program import Leaf, Program
 from csgmesh.domain.curves import ARC, CUBIC, LINE, QUADRATIC, WIDTH, Curves
@@ -38,7 +39,7 @@ class Frame:
     def around(lo: np.ndarray, hi: np.ndarray) -> Frame:
         """The frame of a domain with the given box."""
         if not (np.abs([lo, hi]) <= LARGEST).all():
-            raise EvaluationError(
+            raise ShapeError(
                 f"coordinates must not exceed {LARGEST:g} in size; the shape's transformations "
                 f"carry it from {lo.tolist()} to {hi.tolist()}"
             )
