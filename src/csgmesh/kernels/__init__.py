@@ -24,6 +24,7 @@ _HOME = {
     "fill": "lattice",
     "refine": "refinement",
     "extract": "export",
+    "look_up": "background",
     "limit_gradation": "gradation",
     "expected_points": "gradation",
     "orientations": "checks",

@@ -3,17 +3,23 @@
 from __future__ import annotations
 
 from collections import namedtuple
-from math import hypot
+from math import hypot, sqrt
 
 import numpy as np
 from numba import njit
 
+from .background import background_size
 from .pointers import HELPER
 from .queue import bucket
 
 #: What refinement knows of the wanted mesh. apex_of: up to two apexes on whose segments a vertex
-#: lies; radius: of an apex's protected shell; size: wanted edge length at each vertex if `graded`.
-Aim = namedtuple("Aim", "apex_of radius size graded number todo count")
+#: lies; radius: of an apex's protected shell; size: wanted edge length at each vertex if `graded`;
+#: home: the triangle of the background `ground` in which each vertex lies, if that gives the sizes.
+Aim = namedtuple("Aim", "apex_of radius size graded number todo count home ground")
+
+# Values of `graded`: one size everywhere; at a new vertex as at its neighbours; as the background.
+INHERITED = np.int64(1)
+BACKGROUND = np.int64(2)
 
 # Places in `number`.
 N_COS2 = 0  # squared cosine of the smallest angle
@@ -122,42 +128,69 @@ def badness(xy, origin, twin, aim, t):
 
 
 @njit(**HELPER)
-def steiner_place(xy, origin, t, off):
-    """Off-centre of triangle t for off > 0, or its circumcentre where that is nearer."""
+def apex_height(aim, u, v, mx, my, nx, ny, uu):
+    """Height, as a share of edge u–v of squared length uu, of an apex as far away as wanted.
+
+    (mx, my) is the middle of the edge, (nx, ny) a normal as long as the edge. Not lower than
+    that of an equilateral triangle; 0 without a size.
+    """
+    if aim.graded == 0:
+        h2 = aim.number[N_SIZE]
+        return sqrt(max(h2 / uu - 0.25, 0.75)) if h2 > 0.0 else 0.0
+    h = 0.5 * (aim.size[u] + aim.size[v])
+    high = sqrt(max(h * h / uu - 0.25, 0.75))
+    if aim.graded == BACKGROUND:
+        there, _ = background_size(aim.ground, aim.home[u], mx + high * nx, my + high * ny)
+        h = 0.5 * (h + there)
+        high = sqrt(max(h * h / uu - 0.25, 0.75))
+    return high
+
+
+@njit(**HELPER)
+def steiner_place(xy, origin, aim, t, skinny):
+    """Where triangle t gets its vertex: on the bisector of its shortest edge; and an end of that.
+
+    At the distance of the off-centre if t is skinny, and not further than makes the two new edges
+    as long as wanted (Rebay 1993; Engwirda, Ivers 2016); at the circumcentre where that is nearer.
+    """
     a = origin[t]
     b = origin[t + 1]
     c = origin[t + 2]
-    ox = xy[2 * a]
-    oy = xy[2 * a + 1]
-    bx = xy[2 * b] - ox
-    by = xy[2 * b + 1] - oy
-    cx = xy[2 * c] - ox
-    cy = xy[2 * c + 1] - oy
-    ex = cx - bx
-    ey = cy - by
+    bx = xy[2 * b] - xy[2 * a]
+    by = xy[2 * b + 1] - xy[2 * a + 1]
+    cx = xy[2 * c] - xy[2 * a]
+    cy = xy[2 * c + 1] - xy[2 * a + 1]
     bb = bx * bx + by * by
     cc = cx * cx + cy * cy
-    ee = ex * ex + ey * ey
+    ee = (cx - bx) * (cx - bx) + (cy - by) * (cy - by)
     scale = 0.5 / (bx * cy - cx * by)
-    dx = (cy * bb - by * cc) * scale
-    dy = (bx * cc - cx * bb) * scale
-    if off > 0.0:
-        if bb < cc and bb < ee:
-            fx = 0.5 * bx - off * by
-            fy = 0.5 * by + off * bx
-            if fx * fx + fy * fy < dx * dx + dy * dy:
-                dx = fx
-                dy = fy
-        elif cc < ee:
-            fx = 0.5 * cx + off * cy
-            fy = 0.5 * cy - off * cx
-            if fx * fx + fy * fy < dx * dx + dy * dy:
-                dx = fx
-                dy = fy
-        else:
-            fx = 0.5 * ex - off * ey
-            fy = 0.5 * ey + off * ex
-            if fx * fx + fy * fy < (dx - bx) * (dx - bx) + (dy - by) * (dy - by):
-                dx = bx + fx
-                dy = by + fy
-    return ox + dx, oy + dy
+    dx = xy[2 * a] + (cy * bb - by * cc) * scale
+    dy = xy[2 * a + 1] + (bx * cc - cx * bb) * scale
+    u = b
+    v = c
+    uu = ee
+    if bb < cc and bb < ee:
+        u = a
+        v = b
+        uu = bb
+    elif cc < ee:
+        u = c
+        v = a
+        uu = cc
+    nx = xy[2 * u + 1] - xy[2 * v + 1]
+    ny = xy[2 * v] - xy[2 * u]
+    mx = 0.5 * (xy[2 * u] + xy[2 * v])
+    my = 0.5 * (xy[2 * u + 1] + xy[2 * v + 1])
+    high = apex_height(aim, u, v, mx, my, nx, ny, uu)
+    if skinny:
+        high = min(high, aim.number[N_OFF]) if high > 0.0 else aim.number[N_OFF]
+    if high <= 0.0:
+        return dx, dy, u
+    fx = mx + high * nx
+    fy = my + high * ny
+    ox = xy[2 * u]
+    oy = xy[2 * u + 1]
+    near = (fx - ox) * (fx - ox) + (fy - oy) * (fy - oy)
+    if near < (dx - ox) * (dx - ox) + (dy - oy) * (dy - oy):
+        return fx, fy, u
+    return dx, dy, u

@@ -7,41 +7,88 @@ from math import hypot
 from numba import njit
 
 from .pointers import ENTRY, HELPER, pointer
+from .triangulation import following, preceding
 
 #: A value that would sink by less than this share is left alone.
 WORTH = 1e-3
 
 
 @njit(**HELPER)
-def relax(xy, origin, size, t, growth):
-    """Lower the sizes of triangle t's vertices where another vertex forces it; how many sank."""
-    sunk = 0
-    for e in range(3):
-        u = origin[t + e]
-        v = origin[t + (e + 1 if e < 2 else 0)]
-        reach = growth * hypot(xy[2 * u] - xy[2 * v], xy[2 * u + 1] - xy[2 * v + 1])
-        if size[u] + reach < size[v] * (1.0 - WORTH):
-            size[v] = size[u] + reach
-            sunk += 1
-        elif size[v] + reach < size[u] * (1.0 - WORTH):
-            size[u] = size[v] + reach
-            sunk += 1
-    return sunk
+def put(v, queue, queued, state, n):
+    """Put vertex v at the end of the ring of n places, unless it waits there already."""
+    if queued[v] == 0:
+        queued[v] = 1
+        queue[state[1]] = v
+        state[1] = state[1] + 1 if state[1] + 1 < n else 0
+        state[2] = state[2] + 1
+
+
+@njit(**HELPER)
+def lower(xy, size, u, v, growth):
+    """Lower the size at v if u forces it; whether it did."""
+    limit = size[u] + growth * hypot(xy[2 * u] - xy[2 * v], xy[2 * u + 1] - xy[2 * v + 1])
+    if limit < size[v] * (1.0 - WORTH):
+        size[v] = limit
+        return True
+    return False
+
+
+@njit(**HELPER)
+def find_sources(xy, origin, twin, n_triangles, size, growth, queue, queued, state, n):
+    """Lower what another vertex of the same triangle forces down, and queue it."""
+    for t in range(0, 4 * n_triangles, 4):
+        if twin[t + 3] >= 0:
+            for e in range(3):
+                u = origin[t + e]
+                v = origin[t + (e + 1 if e < 2 else 0)]
+                if lower(xy, size, u, v, growth):
+                    put(v, queue, queued, state, n)
+                elif lower(xy, size, v, u, growth):
+                    put(u, queue, queued, state, n)
+
+
+@njit(**HELPER)
+def spread(xy, origin, twin, size, v, growth, edge_of, queue, queued, state, n):
+    """Look at the neighbours of v along the edges of the domain."""
+    h = edge_of[v]
+    first = h
+    while True:
+        o = twin[h]
+        u = origin[following(h)]
+        if u >= 0 and (twin[h | 3] >= 0 or twin[o | 3] >= 0) and lower(xy, size, v, u, growth):
+            put(u, queue, queued, state, n)
+        h = twin[preceding(h)]
+        if h == first:
+            break
 
 
 @njit(**ENTRY)
-def limit_gradation(points, origin, twin, n_triangles, sizes, growth):
-    """Sweep over the domain's triangles forth and back; returns how many values sank."""
+def limit_gradation(points, origin, twin, n_triangles, sizes, growth, edges, queues, flags, ends):
+    """Lower sizes until none exceeds a neighbour's by more than growth times their distance.
+
+    From every vertex whose size sank its neighbours are looked at again, first come first served.
+    edges, queues, flags: scratch with one entry a vertex, flags 0; ends: three zeros.
+    """
     xy = pointer(points)
     here = pointer(origin)
     there = pointer(twin)
     size = pointer(sizes)
-    sunk = 0
-    for i in range(2 * n_triangles):
-        t = 4 * i if i < n_triangles else 4 * (2 * n_triangles - 1 - i)
+    edge_of = pointer(edges)
+    queue = pointer(queues)
+    queued = pointer(flags)
+    state = pointer(ends)
+    n = queues.shape[0]
+    for t in range(0, 4 * n_triangles, 4):
         if there[t + 3] >= 0:
-            sunk += relax(xy, here, size, t, growth)
-    return sunk
+            for e in range(3):
+                edge_of[here[t + e]] = t + e
+    find_sources(xy, here, there, n_triangles, size, growth, queue, queued, state, n)
+    while state[2] > 0:
+        state[2] = state[2] - 1
+        v = queue[state[0]]
+        state[0] = state[0] + 1 if state[0] + 1 < n else 0
+        queued[v] = 0
+        spread(xy, here, there, size, v, growth, edge_of, queue, queued, state, n)
 
 
 @njit(**ENTRY)

@@ -10,6 +10,7 @@ from numba import njit
 
 from .aim import (
     ALL_SEEN,
+    BACKGROUND,
     C_FIRST,
     C_GIVEN_UP,
     C_LIMIT,
@@ -17,12 +18,12 @@ from .aim import (
     C_SUBSEGMENTS,
     C_TODO,
     C_TRIANGLES,
-    N_OFF,
     ONE,
     Aim,
     badness,
     steiner_place,
 )
+from .background import Background, background_size, interpolated
 from .curves import Subsegments
 from .pointers import ENTRY, HELPER, pointer
 from .queue import Queue, pop, push
@@ -62,32 +63,13 @@ def refused(net, subs, aim, n_ring, x, y):
 
 
 @njit(**HELPER)
-def interpolated(net, aim, t, x, y):
-    """Size at (x, y), linear over triangle t."""
-    xy = net.xy
-    a = net.origin[t]
-    b = net.origin[t + 1]
-    c = net.origin[t + 2]
-    bx = xy[2 * b] - xy[2 * a]
-    by = xy[2 * b + 1] - xy[2 * a + 1]
-    cx = xy[2 * c] - xy[2 * a]
-    cy = xy[2 * c + 1] - xy[2 * a + 1]
-    px = x - xy[2 * a]
-    py = y - xy[2 * a + 1]
-    area = bx * cy - by * cx
-    v = min(max((px * cy - py * cx) / area, 0.0), 1.0)
-    w = min(max((bx * py - by * px) / area, 0.0), 1.0 - v)
-    return (1.0 - v - w) * aim.size[a] + v * aim.size[b] + w * aim.size[c]
-
-
-@njit(**HELPER)
 def improve(net, subs, aim, q, t, stamp, b, room):
     """Deal with bad triangle t of bucket b. Returns a status."""
     xy = net.xy
     bad, skinny = badness(xy, net.origin, net.twin, aim, t)
     if bad < 0:
         return DONE
-    x, y = steiner_place(xy, net.origin, t, aim.number[N_OFF] if skinny else 0.0)
+    x, y, near = steiner_place(xy, net.origin, aim, t, skinny)
     at = walk(xy, net.origin, net.twin, t, x, y, ONE)
     if at < 0:
         if want_split(net, subs, aim, -1 - at):
@@ -115,8 +97,10 @@ def improve(net, subs, aim, q, t, stamp, b, room):
     xy[2 * p + 1] = y
     aim.apex_of[2 * p] = -1
     aim.apex_of[2 * p + 1] = -1
-    if aim.graded != 0:
-        aim.size[p] = interpolated(net, aim, at, x, y)
+    if aim.graded == BACKGROUND:
+        aim.size[p], aim.home[p] = background_size(aim.ground, aim.home[near], x, y)
+    elif aim.graded != 0:
+        aim.size[p] = interpolated(xy, net.origin, aim.size, at, x, y)
     aim.count[C_TRIANGLES] = fan(net, aim.count[C_TRIANGLES], p, n_ring, net.twin[at + 3])
     aim.count[C_POINTS] = p + 1
     queue_fan(net, aim, q, n_ring)
@@ -197,6 +181,7 @@ def refine(
     ends, segment, interval, apex, segment_ends, segment_curve, curve_kind, curve_data,
     buckets, items, state,
     apex_of, radius, size, graded, number, todo, count, rooms,
+    home, ground_points, ground_origin, ground_twin, ground_size,
 ):  # fmt: skip
     """Refine what the arrays hold (see `Net`, `Subsegments`, `Queue`, `Aim`); returns a status."""
     net = Net(
@@ -229,5 +214,12 @@ def refine(
         pointer(number),
         pointer(todo),
         pointer(count),
+        pointer(home),
+        Background(
+            pointer(ground_points),
+            pointer(ground_origin),
+            pointer(ground_twin),
+            pointer(ground_size),
+        ),
     )
     return run(net, subs, aim, q, pointer(rooms))

@@ -6,6 +6,7 @@ import numpy as np
 from numba import njit
 
 from .aim import (
+    BACKGROUND,
     C_BLOCKED,
     C_GIVEN_UP,
     C_POINTS,
@@ -20,6 +21,7 @@ from .aim import (
     ONE,
     badness,
 )
+from .background import background_size
 from .curves import BOTH, split_place
 from .pointers import HELPER
 from .queue import push
@@ -127,7 +129,7 @@ def yield_to(net, subs, aim, h, k, blocking):
 
 
 @njit(**HELPER)
-def halve(subs, aim, k, a, b, p, t):
+def halve(xy, subs, aim, k, a, b, p, t):
     """Subsegment k from a to b becomes a–p and p–b; returns the number of the second."""
     new = aim.count[C_SUBSEGMENTS]
     aim.count[C_SUBSEGMENTS] = new + 1
@@ -148,7 +150,10 @@ def halve(subs, aim, k, a, b, p, t):
         subs.apex[new] = apex
         aim.apex_of[2 * p] = apex
         aim.apex_of[2 * p + 1] = -1
-    if aim.graded != 0:
+    if aim.graded == BACKGROUND:
+        x, y = xy[2 * p], xy[2 * p + 1]
+        aim.size[p], aim.home[p] = background_size(aim.ground, aim.home[a], x, y)
+    elif aim.graded != 0:
         aim.size[p] = 0.5 * (aim.size[a] + aim.size[b])
     return new
 
@@ -212,7 +217,7 @@ def close_cavity(net, subs, aim, q, h, k, at_a, at_b, n_ring, t):
     while i != at_b:
         net.twin[net.cavity[i] + 3] = right
         i = i + 1 if i + 1 < n_ring else 0
-    new = halve(subs, aim, k, a, b, p, t)
+    new = halve(net.xy, subs, aim, k, a, b, p, t)
     set_subsegment(net, net.cavity[at_a] + 2, k)
     set_subsegment(net, net.cavity[at_b] + 2, new)
     aim.count[C_POINTS] = p + 1

@@ -10,7 +10,7 @@ from csgmesh.domain.pslg import Pslg
 from csgmesh.errors import InputError, MeshingError
 from csgmesh.mesh import Mesh
 from csgmesh.meshers.assembly import assemble
-from csgmesh.meshers.subdivision import subdivide
+from csgmesh.meshers.subdivision import Spaced, subdivide
 from csgmesh.meshers.workspace import CROSSING, ON_SEGMENT, Progress, Workspace
 
 #: A curve's chords are halved this often before a crossing of two of them is taken for an error.
@@ -77,10 +77,12 @@ class ConstrainedDelaunay:
         return assemble(work, {"method": "ConstrainedDelaunay", "options": {}})
 
 
-def triangulated(domain: Pslg, pieces: np.ndarray, progress: Progress | None) -> Workspace:
+def triangulated(
+    domain: Pslg, pieces: np.ndarray, progress: Progress | None, spacing: Spaced | None = None
+) -> Workspace:
     """Triangulate a domain whose segments are cut into `pieces` (m,) parts, regions flooded."""
     for _ in range(HALVINGS):
-        work = Workspace(domain, subdivide(domain, pieces), progress)
+        work = Workspace(domain, subdivide(domain, pieces, spacing), progress)
         work.triangulate()
         conflict = _recover(work)
         if conflict is None:

@@ -12,13 +12,10 @@ from csgmesh.domain.pslg import Pslg
 from csgmesh.errors import BudgetError, InputError
 from csgmesh.mesh import Mesh
 from csgmesh.meshers.assembly import assemble
-from csgmesh.meshers.constrained_delaunay import triangulated
-from csgmesh.meshers.lattice import fill_with_lattice
+from csgmesh.meshers.meshing import Meshing
 from csgmesh.meshers.refiner import Refiner
-from csgmesh.meshers.sizing import OVER_BUDGET, POINTS_PER_AREA, Sizing, feature_sizes
-from csgmesh.meshers.subdivision import pieces_by_turning
 from csgmesh.meshers.workspace import Progress, Workspace
-from csgmesh.size import ResolvedSize, resolve
+from csgmesh.size import resolve
 
 #: Beyond this no ordering of Delaunay refinement is known to end on most inputs.
 LARGEST_MIN_ANGLE = 34.0
@@ -72,6 +69,10 @@ class DelaunayRefinement:
     .. [3] A. Üngör, "Off-centers: a new type of Steiner points", LATIN (2004).
     .. [4] G. L. Miller, S. E. Pav, N. J. Walkington, "When and why Delaunay refinement algorithms
        work", Int. J. Computational Geometry and Applications 15 (2005).
+    .. [5] S. Rebay, "Efficient unstructured mesh generation by means of Delaunay triangulation and
+       Bowyer-Watson algorithm", J. Computational Physics 106 (1993).
+    .. [6] D. Engwirda, D. Ivers, "Off-centre Steiner points for Delaunay-refinement on curved
+       surfaces", Computer-Aided Design 72 (2016).
 
     Examples
     --------
@@ -124,47 +125,21 @@ class DelaunayRefinement:
             If the size is not positive and finite somewhere, or names nothing.
         """
         wanted = resolve(size, domain)
-        uniform = wanted.uniform if wanted is not None else None
-        pieces = pieces_by_turning(domain)
-        if uniform is None or self._expected(domain, uniform) > self.max_points:
-            work = triangulated(domain, pieces, progress)
-        else:
-            pieces = np.maximum(pieces, _pieces_by_size(domain, uniform))
-            work = triangulated(domain, pieces, progress)
-            if feature_sizes(domain).min() >= uniform:
-                fill_with_lattice(work, uniform)
-        refiner = Refiner(work, self.min_angle, self.max_points)
+        limits = self.min_angle, self.gradation, self.max_points
+        run = Meshing(domain, sharp_corners(domain), limits, progress)
         try:
-            finished = self._refine(refiner, wanted, uniform)
+            finished = run.run(wanted)
         except BudgetError as error:
-            refiner.publish()
-            error.mesh = assemble(work, self._info(work, refiner))
+            error.mesh = self._mesh(run)
             raise
-        refiner.publish()
-        mesh = assemble(work, self._info(work, refiner))
+        mesh = self._mesh(run)
         if not finished:
             raise BudgetError(_where_it_stopped(mesh, self, size), mesh)
         return mesh
 
-    def _refine(self, refiner: Refiner, wanted: ResolvedSize | None, uniform: float | None) -> bool:
-        if wanted is None:
-            return refiner.run()
-        if uniform is not None:
-            domain = refiner.work.domain
-            expected = self._expected(domain, uniform)
-            if expected > OVER_BUDGET * self.max_points:
-                raise BudgetError(
-                    f"a size of {uniform:g} asks for about {expected:.2g} points in a domain "
-                    f"{domain.diagonal:.3g} across; max_points is {self.max_points}"
-                )
-            if feature_sizes(domain).min() >= uniform:
-                refiner.set_uniform(uniform)
-                return refiner.run()
-        return Sizing(refiner, wanted, self.gradation).refine()
-
-    @staticmethod
-    def _expected(domain: Pslg, size: float) -> float:
-        return float(domain.chord_areas().sum()) * POINTS_PER_AREA / size**2
+    def _mesh(self, run: Meshing) -> Mesh:
+        run.refiner.publish()
+        return assemble(run.work, self._info(run.work, run.refiner))
 
     def _info(self, work: Workspace, refiner: Refiner) -> dict[str, object]:
         return {
@@ -175,13 +150,6 @@ class DelaunayRefinement:
             "n_sharp_corners": int((refiner.radius > 0).sum()),
             "n_given_up": int(refiner.count[7]),
         }
-
-
-def _pieces_by_size(domain: Pslg, size: float) -> np.ndarray:
-    """Parts of each segment of about the wanted length; sharp corners are left to the shells."""
-    pieces = np.maximum(np.rint(domain.lengths() / size), 1).astype(np.int64)
-    pieces[sharp_corners(domain).is_sharp_end.any(axis=1)] = 1
-    return pieces
 
 
 def _where_it_stopped(mesh: Mesh, mesher: DelaunayRefinement, size: Any) -> str:

@@ -5,25 +5,35 @@ from __future__ import annotations
 import numpy as np
 
 from csgmesh import kernels
+from csgmesh.meshers.background import Background
 from csgmesh.meshers.workspace import MOST_POINTS, ROOM, SLICE, Workspace, grown, rounds
 
 #: Lattice points nearer than this to a vertex, or to a subsegment, are left out (shares of the
 #: size): what lies between lattice and boundary is left to refinement.
 FROM_VERTEX = 0.7
 FROM_SEGMENT = 0.5
+#: Where sizes sink below this share of the lattice's, it ends; above, its triangles are not yet too
+#: large for refinement.
+NEARLY = 0.8
 
 
-def fill_with_lattice(work: Workspace, size: float) -> None:
-    """Insert the points of a hexagonal lattice of edge length `size` that lie inside."""
+def fill_with_lattice(work: Workspace, size: float, ground: Background | None = None) -> None:
+    """Insert the points of a hexagonal lattice of edge length `size` that lie inside.
+
+    Only those at which the background, if there is one, wants that size.
+    """
     points = lattice(work, size)
+    if len(points):
+        keys = np.empty(len(points), np.int64)
+        kernels.curve_keys(points.reshape(-1), rounds(len(points)), keys)
+        keys.sort()
+        points = points[keys & (MOST_POINTS - 1)]
+    if ground is not None and len(points):
+        points = points[ground.at(points.reshape(-1))[0] >= NEARLY * size]
     n = len(points)
     if not n:
         return
-    flat = points.reshape(-1)
-    keys = np.empty(n, np.int64)
-    kernels.curve_keys(flat, rounds(n), keys)
-    keys.sort()
-    candidates = points[keys & (MOST_POINTS - 1)].reshape(-1)
+    candidates = points.reshape(-1)
     work.points = grown(work.points, 2 * (work.n_points + n))
     for name in ("origin", "twin", "sub"):
         setattr(work, name, grown(getattr(work, name), 4 * (work.n_triangles + 2 * n)))

@@ -5,7 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from csgmesh import kernels
+from csgmesh.domain.input_angles import SharpCorners
 from csgmesh.errors import MeshingError
+from csgmesh.meshers.background import Background
 from csgmesh.meshers.workspace import BUDGET, ROOM, SLICE, STUCK, Workspace, grown
 from csgmesh.tolerance import coordinate_ulp
 
@@ -17,6 +19,10 @@ SEGMENT_SHARE = 1.3
 #: (Shewchuk's choice in Triangle).
 OFF_CENTRE = 0.475
 
+# Where sizes come from, as the kernel counts it.
+EVEN, INHERITED, GIVEN = range(3)
+NOTHING = Background(np.empty(1), np.empty(1, np.int32), np.empty(1, np.int32), np.empty(1))
+
 N_BUCKETS = 1024
 #: Queue entries a cavity may need, per cavity slot.
 PER_CAVITY = 2
@@ -25,7 +31,9 @@ PER_CAVITY = 2
 class Refiner:
     """Refines a workspace in place, in slices short enough for Ctrl-C and progress."""
 
-    def __init__(self, work: Workspace, min_angle: float, max_points: int) -> None:
+    def __init__(
+        self, work: Workspace, corners: SharpCorners, min_angle: float, max_points: int
+    ) -> None:
         self.work = work
         self.max_points = max_points
         cosine = np.cos(np.radians(min_angle))
@@ -48,7 +56,7 @@ class Refiner:
         self.segment = work.pieces.segment.astype(np.int32)
         self.interval = work.pieces.interval.reshape(-1).copy()
         self.ends = work.ends
-        self.apex, self.apex_of, self.radius = work.sharp()
+        self.apex, self.apex_of, self.radius = work.sharp(corners)
         self.apex_of = grown(self.apex_of, len(work.points))
         domain = work.domain
         self.segment_ends = work.rank[domain.segments].reshape(-1)
@@ -60,14 +68,12 @@ class Refiner:
         self.state = np.array([-1, 0, N_BUCKETS - 1, 0], np.int64)
         self.todo = np.empty(3 * 2048, np.int32)
         self.size = np.empty(1)
+        self.home = np.empty(1, np.int32)
+        self.ground = NOTHING
+        self.graded = EVEN
         self.count = np.array(
             [work.n_points, work.n_triangles, n_sub, 0, 0, max_points, 0, 0, -1], np.int64
         )
-
-    @property
-    def graded(self) -> bool:
-        """Whether each vertex has a size of its own."""
-        return len(self.size) > 1
 
     def run(self) -> bool:
         """Refine until nothing is bad: True; or until the budget of points is used up: False."""
@@ -93,22 +99,41 @@ class Refiner:
         """Want the same edge length everywhere."""
         self.number[4] = size**2
 
+    def set_sizes(self) -> None:
+        """Let each vertex have a size of its own, new ones as their neighbours."""
+        self.graded = INHERITED
+        self.ground, self.home = NOTHING, np.empty(1, np.int32)
+        self.size = grown(self.size, len(self.work.points) // 2)
+
+    def set_background(self, ground: Background) -> None:
+        """Want what a coarser mesh says."""
+        n = self.work.n_points
+        self.graded, self.ground = GIVEN, ground
+        size, home = ground.at(self.work.points[: 2 * n])
+        self.size = grown(size, len(self.work.points) // 2)
+        self.home = grown(home, len(self.work.points) // 2)
+
     def look_again(self) -> None:
         """Let the next run test every triangle anew, after sizes have changed."""
         self.count[4] = 0
 
+    def segments(self) -> np.ndarray:
+        """The domain's segment of each subsegment."""
+        segment = self.segment[: self.n_sub].astype(np.int64)
+        return np.where(segment < 0, -1 - segment, segment)
+
     def publish(self) -> None:
         """Hand the subsegments back to the workspace, and let go of what refinement needed."""
         n = self.n_sub
-        segment = self.segment[:n].astype(np.int64)
         work = self.work
         work.set_subsegments(
             self.ends[: 2 * n],
-            np.where(segment < 0, -1 - segment, segment),
+            self.segments(),
             self.interval[: 2 * n].reshape(-1, 2),
         )
         self.items = self.todo = self.apex_of = np.empty(0, np.int32)
         self.size = np.empty(0)
+        self.home, self.ground = np.empty(0, np.int32), NOTHING
 
     def _slice(self) -> int:
         work = self.work
@@ -149,6 +174,11 @@ class Refiner:
                 self.todo,
                 self.count,
                 rooms,
+                self.home,
+                self.ground.points,
+                self.ground.origin,
+                self.ground.twin,
+                self.ground.size,
             )
         )
 
@@ -164,6 +194,8 @@ class Refiner:
             self.apex_of = grown(self.apex_of, 2 * n)
             if self.graded:
                 self.size = grown(self.size, n)
+            if self.graded == GIVEN:
+                self.home = grown(self.home, n)
             full = True
         if 4 * (triangles + 2) > len(work.origin):
             n = 4 * (3 * triangles // 2 + 512)

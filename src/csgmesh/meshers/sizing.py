@@ -20,7 +20,8 @@ SURPRISE = 0.8
 #: short chord of a sharply curved boundary, is a feature from which sizes grow.
 FEATURE_SHARE = 1.5
 LAST_ROUNDS = 8
-MOST_SWEEPS = 200
+#: How much coarser than wanted the mesh is that first finds out the sizes.
+COARSE = 4.0
 
 
 def feature_sizes(domain: Pslg) -> np.ndarray:
@@ -33,42 +34,70 @@ def feature_sizes(domain: Pslg) -> np.ndarray:
 class Sizing:
     """Keeps a refiner's sizes: exact at each vertex, growing no faster than the gradation.
 
-    The kernel interpolates sizes at new vertices. A mesh is therefore made from coarse to fine,
-    with sizes twice, four times, … as large as wanted at first, and after each round the exact
-    values are put in place: the interpolation never spans more than an edge or two.
+    The kernel interpolates sizes at new vertices. A mesh that is to find them out is therefore
+    made from coarse to fine, and after each round the exact values are put in place: the
+    interpolation never spans more than an edge or two.
     """
 
-    def __init__(self, refiner: Refiner, size: ResolvedSize | None, gradation: float) -> None:
+    def __init__(
+        self, refiner: Refiner, size: ResolvedSize, feature: np.ndarray, gradation: float
+    ) -> None:
         self.refiner = refiner
         self.size = size
         self.gradation = gradation
         self.known = 0
         domain = refiner.work.domain
         self.largest = domain.diagonal
-        self.feature = feature_sizes(domain)
-        refiner.size = np.empty(len(refiner.work.points) // 2)
+        self.feature = feature
 
-    def refine(self) -> bool:
-        """Refine to the sizes; False when the budget of points ran out."""
-        refiner = self.refiner
+    def approach(self) -> bool:
+        """Refine until edges are about `COARSE` times as long as wanted; False without points."""
         smallest = self.update()
-        coarse = max(int(np.ceil(np.log2(self.largest / smallest))) - 1, 0)
-        for k in [*range(coarse, 0, -1), *[0] * LAST_ROUNDS]:
-            self.check_budget()
-            refiner.number[2] = (CIRCLE_SHARE * 2.0**k) ** 2
-            refiner.number[3] = (SEGMENT_SHARE * 2.0**k) ** 2
-            refiner.look_again()
-            before = self.known
-            if not refiner.run():
+        edge = 0.5 * self.largest
+        while edge > COARSE * smallest:
+            if not self.round(edge / smallest)[0]:
                 return False
-            if k == 0 and refiner.work.n_points == before:
-                break
-            guess = refiner.size[before : refiner.work.n_points].copy()
-            self.update()
-            found = refiner.size[before : refiner.work.n_points]
-            if k == 0 and not (found < SURPRISE * guess).any():
+            edge *= 0.5
+            smallest = self.smallest()
+        return self.settle(COARSE)
+
+    def confirm(self) -> bool:
+        """Refine where exact sizes are much smaller than those refined for."""
+        refiner = self.refiner
+        guess = refiner.size[: refiner.work.n_points].copy()
+        refiner.set_sizes()
+        self.update()
+        if not (refiner.size[: len(guess)] < SURPRISE * guess).any():
+            return True
+        return self.settle(1.0)
+
+    def settle(self, level: float) -> bool:
+        """Refine to edges `level` times as long as wanted until sizes hold no more surprises."""
+        for _ in range(LAST_ROUNDS):
+            finished, surprised = self.round(level)
+            if not finished:
+                return False
+            if not surprised:
                 break
         return True
+
+    def round(self, level: float) -> tuple[bool, bool]:
+        """Refine to edges `level` times as long as wanted, then put exact sizes in place.
+
+        Returns whether the budget of points sufficed, and whether sizes turned out much smaller.
+        """
+        refiner = self.refiner
+        self.check_budget()
+        refiner.number[2] = (CIRCLE_SHARE * level) ** 2
+        refiner.number[3] = (SEGMENT_SHARE * level) ** 2
+        refiner.look_again()
+        before = self.known
+        if not refiner.run():
+            return False, False
+        guess = refiner.size[before : refiner.work.n_points].copy()
+        self.update()
+        found = refiner.size[before : refiner.work.n_points]
+        return True, bool((found < SURPRISE * guess).any())
 
     def check_budget(self) -> None:
         """Refuse at once what cannot be done within the budget."""
@@ -92,34 +121,39 @@ class Sizing:
         points = work.points[2 * self.known : 2 * n].reshape(-1, 2)
         value = np.full(len(points), self.largest)
         size = self.size
-        if size is not None:
-            if size.default is not None:
-                value = np.minimum(evaluate(size.default, points), self.largest)
-            if size.region:
-                self._regions(value)
+        if size.default is not None:
+            value = np.minimum(evaluate(size.default, points), self.largest)
+        if size.region:
+            self._regions(value)
         refiner.size[new] = value
         self.known = n
         self._boundaries()
         self._limit()
-        return float(refiner.size[:n].min())
+        return self.smallest()
+
+    def smallest(self) -> float:
+        """The smallest size so far."""
+        return float(self.refiner.size[: self.known].min())
 
     def _limit(self) -> None:
         work = self.refiner.work
-        for _ in range(MOST_SWEEPS):
-            if not kernels.limit_gradation(
-                work.points,
-                work.origin,
-                work.twin,
-                work.n_triangles,
-                self.refiner.size,
-                self.gradation,
-            ):
-                break
+        n = work.n_points
+        kernels.limit_gradation(
+            work.points,
+            work.origin,
+            work.twin,
+            work.n_triangles,
+            self.refiner.size,
+            self.gradation,
+            np.empty(n, np.int32),
+            np.empty(n, np.int32),
+            np.zeros(n, np.uint8),
+            np.zeros(3, np.int64),
+        )
 
     def _regions(self, value: np.ndarray) -> None:
         """Put the sizes of regions at their new vertices; the smaller one on interfaces."""
         work = self.refiner.work
-        assert self.size is not None
         corners = work.origin[: 4 * work.n_triangles].reshape(-1, 4)[:, :3]
         region = work.twin[: 4 * work.n_triangles].reshape(-1, 4)[:, 3]
         default = value.copy()
@@ -144,17 +178,13 @@ class Sizing:
         """Sizes on named boundaries, and on all boundaries what their shape asks for."""
         refiner = self.refiner
         work = refiner.work
-        n = refiner.n_sub
-        ends = refiner.ends[: 2 * n].reshape(-1, 2)
-        segment = refiner.segment[:n].astype(np.int64)
-        segment = np.where(segment < 0, -1 - segment, segment)
+        ends = refiner.ends[: 2 * refiner.n_sub].reshape(-1, 2)
         xy = work.points.reshape(-1, 2)
         at = work.rank[: len(self.feature)]
         refiner.size[at] = np.minimum(refiner.size[at], self.feature)
-        if self.size is not None:
-            marker = work.domain.segment_marker[segment]
-            for markers, source in self.size.boundary:
-                at = np.unique(ends[np.isin(marker, markers)]).astype(np.int64)
-                probes = np.flatnonzero(np.isin(work.domain.point_marker, markers))
-                at = np.union1d(at, work.rank[probes])
-                refiner.size[at] = np.minimum(refiner.size[at], evaluate(source, xy[at]))
+        marker = work.domain.segment_marker[refiner.segments()]
+        for markers, source in self.size.boundary:
+            at = np.unique(ends[np.isin(marker, markers)]).astype(np.int64)
+            probes = np.flatnonzero(np.isin(work.domain.point_marker, markers))
+            at = np.union1d(at, work.rank[probes])
+            refiner.size[at] = np.minimum(refiner.size[at], evaluate(source, xy[at]))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -60,8 +61,15 @@ class Subdivision:
         )
 
 
-def subdivide(domain: Pslg, pieces: np.ndarray) -> Subdivision:
-    """Cut each segment into `pieces` (m,) parts of equal parameter length, on the exact curve."""
+#: Maps shares of segments, (k,) segments and (k,) shares, to other shares of them.
+Spaced = Callable[[np.ndarray, np.ndarray], np.ndarray]
+
+
+def subdivide(domain: Pslg, pieces: np.ndarray, spacing: Spaced | None = None) -> Subdivision:
+    """Cut each segment into `pieces` (m,) parts on the exact curve.
+
+    They are of equal parameter length, unless `spacing` moves their ends.
+    """
     m = len(domain.segments)
     interval = np.where(
         domain.segment_curve[:, None] >= 0, domain.segment_interval, np.array([[0.0, 1.0]])
@@ -73,8 +81,11 @@ def subdivide(domain: Pslg, pieces: np.ndarray) -> Subdivision:
     first = np.cumsum(pieces) - pieces
     step = np.arange(len(segment)) - first[segment]
     share = np.column_stack([step, step + 1]) / pieces[segment, None]
-    t = (1.0 - share) * interval[segment, :1] + share * interval[segment, 1:]
     is_last = step == pieces[segment] - 1
+    if spacing is not None:
+        end = np.where(is_last, 1.0, spacing(segment, share[:, 1]))
+        share = np.column_stack([np.where(step == 0, 0.0, np.roll(end, 1)), end])
+    t = (1.0 - share) * interval[segment, :1] + share * interval[segment, 1:]
     new = np.flatnonzero(~is_last)
     number = np.full(len(segment), -1)
     number[new] = len(domain.points) + np.arange(len(new))

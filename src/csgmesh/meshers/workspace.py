@@ -7,7 +7,7 @@ from collections.abc import Callable
 import numpy as np
 
 from csgmesh import kernels
-from csgmesh.domain.input_angles import sharp_corners
+from csgmesh.domain.input_angles import SharpCorners
 from csgmesh.domain.pslg import Pslg
 from csgmesh.errors import MeshingError
 from csgmesh.meshers.subdivision import Subdivision
@@ -171,9 +171,8 @@ class Workspace:
                 + self.segment_text(int(counts[0]))
             )
 
-    def sharp(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    def sharp(self, corners: SharpCorners) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Apex of each subsegment, two apexes of each vertex, radius of the shells by vertex."""
-        corners = sharp_corners(self.domain)
         apex = np.full(len(self.pieces.ends), -1, np.int32)
         apex_of = np.full(2 * self.n_points, -1, np.int32)
         radius = np.zeros(self.n_points)

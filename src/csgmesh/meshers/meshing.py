@@ -1,0 +1,118 @@
+"""Meshes of sizes that vary: a coarse mesh finds the sizes out, a second one follows them."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from csgmesh.domain.input_angles import SharpCorners
+from csgmesh.domain.pslg import Pslg
+from csgmesh.errors import BudgetError
+from csgmesh.meshers.background import Background, Spacing
+from csgmesh.meshers.constrained_delaunay import triangulated
+from csgmesh.meshers.lattice import fill_with_lattice
+from csgmesh.meshers.refiner import Refiner
+from csgmesh.meshers.sizing import OVER_BUDGET, POINTS_PER_AREA, Sizing, feature_sizes
+from csgmesh.meshers.subdivision import Spaced, pieces_by_turning
+from csgmesh.meshers.workspace import Progress, Workspace
+from csgmesh.size.resolve import ResolvedSize
+
+
+class Meshing:
+    """One run of the mesher, which can be stopped with the mesh so far.
+
+    New vertices are placed frontally, as far from an edge as their size asks for. For that sizes
+    must be known away from the boundary before anything is placed there: a first mesh with edges a
+    few times too long finds them out, and is thrown away.
+    """
+
+    def __init__(
+        self,
+        domain: Pslg,
+        corners: SharpCorners,
+        limits: tuple[float, float, int],
+        progress: Progress | None,
+    ) -> None:
+        self.domain = domain
+        self.corners = corners
+        self.min_angle, self.gradation, self.max_points = limits
+        self.progress = progress
+        self.work: Workspace
+        self.refiner: Refiner
+
+    def start(self, pieces: np.ndarray, spacing: Spaced | None = None) -> None:
+        """Triangulate the domain, with its segments cut into pieces."""
+        self.work = triangulated(self.domain, pieces, self.progress, spacing)
+        self.refine_from_here()
+
+    def refine_from_here(self) -> None:
+        """Make a new refiner of the workspace."""
+        self.refiner = Refiner(self.work, self.corners, self.min_angle, self.max_points)
+
+    def without_size(self) -> bool:
+        """Follow the features alone; False when the budget of points ran out."""
+        self.start(pieces_by_turning(self.domain))
+        return self.refiner.run()
+
+    def uniform(self, size: float) -> bool:
+        """Mesh with one size which no feature undercuts."""
+        pieces = np.rint(self.domain.lengths() / size).astype(np.int64)
+        self.start(self._at_least(pieces))
+        fill_with_lattice(self.work, size)
+        self.refine_from_here()
+        self.refiner.set_uniform(size)
+        return self.refiner.run()
+
+    def graded(self, size: ResolvedSize, feature: np.ndarray) -> bool:
+        """Mesh with sizes that vary."""
+        self.start(pieces_by_turning(self.domain))
+        self.refiner.set_sizes()
+        sizing = Sizing(self.refiner, size, feature, self.gradation)
+        if not sizing.approach():
+            return False
+        ground = Background.of(self.work, self.refiner.size)
+        spacing = self._spacing()
+        pieces = self._at_least(np.rint(spacing.edges).astype(np.int64))
+        spacing.even = pieces > np.maximum(np.rint(spacing.edges), 1)
+        self.start(pieces, spacing)
+        if size.uniform is not None:
+            fill_with_lattice(self.work, size.uniform, ground)
+            self.refine_from_here()
+        self.refiner.set_background(ground)
+        if not self.refiner.run():
+            return False
+        return Sizing(self.refiner, size, feature, self.gradation).confirm()
+
+    def _at_least(self, pieces: np.ndarray) -> np.ndarray:
+        """As many pieces as curves ask for; segments at sharp corners are left to the shells."""
+        pieces[self.corners.is_sharp_end.any(axis=1)] = 1
+        return np.maximum(pieces, pieces_by_turning(self.domain))
+
+    def _spacing(self) -> Spacing:
+        refiner, n = self.refiner, self.refiner.n_sub
+        ends = refiner.ends[: 2 * n].reshape(-1, 2)
+        across = np.diff(self.work.points.reshape(-1, 2)[ends], axis=1)[:, 0]
+        return Spacing(
+            self.domain,
+            refiner.segments(),
+            refiner.interval[: 2 * n].reshape(-1, 2),
+            np.hypot(across[:, 0], across[:, 1]),
+            refiner.size[ends],
+        )
+
+    def run(self, size: ResolvedSize | None) -> bool:
+        """Mesh the domain; False when the budget of points ran out."""
+        if size is None:
+            return self.without_size()
+        feature = feature_sizes(self.domain)
+        if size.uniform is None:
+            return self.graded(size, feature)
+        expected = float(self.domain.chord_areas().sum()) * POINTS_PER_AREA / size.uniform**2
+        if expected > OVER_BUDGET * self.max_points:
+            self.start(pieces_by_turning(self.domain))
+            raise BudgetError(
+                f"a size of {size.uniform:g} asks for about {expected:.2g} points in a domain "
+                f"{self.domain.diagonal:.3g} across; max_points is {self.max_points}"
+            )
+        if feature.min() >= size.uniform:
+            return self.uniform(size.uniform)
+        return self.graded(size, feature)
