@@ -53,6 +53,7 @@ _HOME = {
         "SizeError",
         "UnboundedDomainError",
     ),
+    "csgmesh.improve": ("smooth",),
     "csgmesh.io": ("from_meshio", "read", "to_meshio", "to_skfem", "write"),
     "csgmesh.measures": ("Certificate", "Quality", "quality"),
     "csgmesh.mesh": ("Mesh",),
@@ -110,6 +111,7 @@ __all__ = [
     "load",
     "quality",
     "read",
+    "smooth",
     "symmetric_difference",
     "to_meshio",
     "to_skfem",
@@ -155,6 +157,7 @@ if TYPE_CHECKING:
         SizeError,
         UnboundedDomainError,
     )
+    from csgmesh.improve import smooth
     from csgmesh.io import from_meshio, read, to_meshio, to_skfem, write
     from csgmesh.measures.certificate import Certificate
     from csgmesh.measures.quality import Quality, quality

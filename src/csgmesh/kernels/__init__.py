@@ -29,6 +29,11 @@ _HOME = {
     "expected_points": "gradation",
     "orientations": "checks",
     "in_circles": "checks",
+    "Arrays": "improvement",
+    "measure": "improvement",
+    "pair_half_edges": "improvement",
+    "smooth_vertices": "improvement",
+    "treat_triangles": "improvement",
 }
 
 

@@ -10,6 +10,7 @@ import numpy as np
 from csgmesh.domain.input_angles import sharp_corners
 from csgmesh.domain.pslg import Pslg
 from csgmesh.errors import BudgetError, InputError
+from csgmesh.improve import optimise
 from csgmesh.mesh import Mesh
 from csgmesh.meshers.assembly import assemble
 from csgmesh.meshers.meshing import Meshing
@@ -33,6 +34,9 @@ class DelaunayRefinement:
         Bound on the growth of sizes per unit of length.
     max_points : int, default 10**7
         Bound on the number of points.
+    improve : bool, default False
+        Whether to raise the smallest angles afterwards by moving vertices and turning edges, to 39
+        degrees where the boundary lets them: see `csgmesh.improve.optimise`.
 
     Raises
     ------
@@ -52,6 +56,7 @@ class DelaunayRefinement:
     shell (see `csgmesh.domain.input_angles`), may have smaller angles: along two segments that
     leave a vertex at a small angle, new vertices lie on common circles around it, and the edges
     between them are left alone. Edges a few units in the last place long are not divided.
+    With `improve` the triangulation is not Delaunay in places.
 
     Termination
     -----------
@@ -86,6 +91,7 @@ class DelaunayRefinement:
     min_angle: float = 30.0
     gradation: float = 0.3
     max_points: int = 10**7
+    improve: bool = False
 
     def __post_init__(self) -> None:
         if not 0 <= self.min_angle <= LARGEST_MIN_ANGLE:
@@ -97,6 +103,8 @@ class DelaunayRefinement:
             raise InputError(f"gradation must be positive and finite; got {self.gradation!r}")
         if self.max_points < 3:
             raise InputError(f"max_points must be at least 3; got {self.max_points!r}")
+        if not isinstance(self.improve, bool):
+            raise InputError(f"improve must be True or False; got {self.improve!r}")
 
     def generate(self, domain: Pslg, size: Any = None, progress: Progress | None = None) -> Mesh:
         """Mesh a domain.
@@ -135,7 +143,8 @@ class DelaunayRefinement:
         mesh = self._mesh(run)
         if not finished:
             raise BudgetError(_where_it_stopped(mesh, self, size), mesh)
-        return mesh
+        uniform = wanted.uniform if wanted is not None else None
+        return optimise(mesh, uniform, progress=progress) if self.improve else mesh
 
     def _mesh(self, run: Meshing) -> Mesh:
         run.refiner.publish()

@@ -1,0 +1,72 @@
+"""The verb `csgmesh.smooth`."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from csgmesh.errors import InputError
+from csgmesh.improve.breakthrough import broken_through
+from csgmesh.improve.optimisation import optimise
+from csgmesh.improve.workpiece import Progress, Workpiece
+from csgmesh.mesh import Mesh
+from csgmesh.options import near
+
+METHODS = ("laplace", "odt", "optimize")
+
+
+def smooth(
+    mesh: Mesh, method: str = "odt", *, sweeps: int = 5, progress: Progress | None = None
+) -> Mesh:
+    """Move the vertices of a mesh of triangles to better places.
+
+    A vertex moves only if no triangle around it turns over and the smallest angle around it does
+    not sink; so the mesh's smallest angle never sinks. Vertices of the boundary slide along their
+    exact curve; corners, junctions and embedded points stay, and so do vertices on facets without
+    an exact curve.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        Plane, of triangles.
+    method : {"odt", "laplace", "optimize"}
+        To the centre that minimises the interpolation error (optimal Delaunay triangulation: Chen
+        and Xu 2004); to the mean of the neighbours; or raise the smallest angles, which also turns
+        edges: see `csgmesh.improve.optimise`.
+    sweeps : int, default 5
+        How often to go through all vertices; "optimize" decides for itself.
+    progress : callable, optional
+        Called as ``progress(stage, done, total)``.
+
+    Returns
+    -------
+    Mesh
+        With the same names; the same cells too, but for "optimize".
+
+    Raises
+    ------
+    InputError
+        If the method is unknown or the mesh holds anything but triangles.
+
+    Examples
+    --------
+    >>> import csgmesh as cm
+    >>> mesh = cm.generate(cm.Box((0, 0), (2, 1)), size=0.3)
+    >>> cm.smooth(mesh, method="odt").n_cells == mesh.n_cells
+    True
+    """
+    if method not in METHODS:
+        raise InputError(f"smooth has no method {method!r}; {near(str(method), METHODS)}")
+    if sweeps < 0:
+        raise InputError(f"sweeps must not be negative; got {sweeps!r}")
+    if method == "optimize":
+        return optimise(mesh, progress=progress)
+    pinned = np.zeros(0, np.int64)
+    while True:
+        work = Workpiece(mesh, None, pinned)
+        for _ in range(sweeps):
+            if not work.smooth(method == "odt", progress):
+                break
+        found = broken_through(work)
+        if not len(found):
+            return work.finished()
+        pinned = np.concatenate([pinned, found])
