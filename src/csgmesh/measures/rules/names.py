@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections import Counter
+
 import numpy as np
 
 from csgmesh.measures.matching import segments_at
@@ -135,7 +137,7 @@ def _idle_markers(case: Case) -> list[Failure]:
 
 
 def _named_twice(rule: str, what: str, names: tuple[str, ...]) -> list[Failure]:
-    twice = sorted({name for name in names if names.count(name) > 1})
+    twice = sorted(name for name, n in Counter(names).items() if n > 1)
     if not twice:
         return []
     return [Failure(rule, f"{what} {_listed(twice)} is named twice", (), what, (), len(twice))]
@@ -144,8 +146,9 @@ def _named_twice(rule: str, what: str, names: tuple[str, ...]) -> list[Failure]:
 def _differences(
     rule: str, what: str, ours: tuple[str, ...], theirs: tuple[str, ...]
 ) -> list[Failure]:
-    lost = [name for name in theirs if name not in set(ours)]
-    new = [name for name in ours if name not in set(theirs)]
+    have, wanted = set(ours), set(theirs)
+    lost = [name for name in theirs if name not in have]
+    new = [name for name in ours if name not in wanted]
     found = []
     if lost:
         message = f"{what} {_listed(lost)} of the domain is not in the mesh"
