@@ -53,8 +53,7 @@ def broken_through(work: Workpiece) -> np.ndarray:
 
 def _is_apart(ends: np.ndarray, near: np.ndarray) -> np.ndarray:
     """Whether facets (k, 2) have no vertex among (k, 3)."""
-    apart = ends[:, :, None] != near[:, None, :]
-    return np.asarray(apart.all(axis=(1, 2)))
+    return np.asarray((ends[:, :, None] != near[:, None, :]).all(axis=(1, 2)))
 
 
 def _meet(points: np.ndarray, a: np.ndarray, b: np.ndarray) -> np.ndarray:
@@ -77,4 +76,4 @@ def _within(points: np.ndarray, triangle: np.ndarray, vertex: np.ndarray) -> np.
             for k in range(3)
         ]
     )
-    return (signs > 0).all(axis=0) | (signs < 0).all(axis=0)
+    return np.abs(signs.sum(axis=0)) == 3
