@@ -17,7 +17,7 @@ EASE = 4.0
 #: and rounds of the search for a vertex's place. Most are mended by the first pass.
 PASSES = ((3, 7), (3, 7), (3, 7), (4, 10), (4, 10), (4, 10), (4, 10))
 #: Vertices tried in other places at most, and how many more for each triangle.
-EFFORT, EFFORT_PER_CELL = 1500, 3
+EFFORT, EFFORT_PER_CELL = 1200, 1.5
 
 
 def optimise(
@@ -106,11 +106,11 @@ def _climb(work: Workpiece, goal: float, progress: Progress | None) -> None:
     arrays = work.arrays
     easy = min(goal + EASE, 0.5 * (goal + 60.0))
     arrays.number[[GOAL, EASY]] = 1.0 / np.tan(np.radians([goal, easy]))
-    arrays.count[LIMIT] = EFFORT + EFFORT_PER_CELL * len(arrays.failed)
+    arrays.count[LIMIT] = int(EFFORT + EFFORT_PER_CELL * len(arrays.failed))
     before = PASSES[0]
     for effort in PASSES:
         if effort != before:
+            # What a short search could not mend, a longer one may.
             arrays.failed[:] = -1
         before = effort
-        if not work.treat(*effort, progress) and effort == PASSES[-1]:
-            break
+        work.treat(*effort, progress)
