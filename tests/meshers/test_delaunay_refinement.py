@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+
 import numpy as np
 import pytest
 from plane_domains import (
@@ -21,7 +23,7 @@ from plane_domains import (
 
 from csgmesh.domain import Pslg
 from csgmesh.errors import BudgetError, InputError, MeshingError, NameLookupError, SizeError
-from csgmesh.meshers import DelaunayRefinement
+from csgmesh.meshers import DelaunayRefinement, worst_cells
 
 ELL = [(0, 0), (2, 0), (2, 1), (1, 1), (1, 2), (0, 2)]
 FRAME = [(0, 0), (1, 0), (1, 1), (0, 1)]
@@ -349,3 +351,21 @@ def test_edges_on_the_boundary_grow_with_the_size() -> None:
     bottom = ends[(ends[..., 1] == 0).all(axis=1)]
     share = np.hypot(*(bottom[:, 1] - bottom[:, 0]).T) / (0.01 + 0.1 * bottom[..., 0].mean(axis=1))
     assert share.min() > 0.9 and share.max() < 1.1
+
+
+def test_the_worst_cells_are_explained() -> None:
+    sharp = DelaunayRefinement().generate(wedge(10), 0.05)
+    worst = worst_cells(sharp, 3)
+    assert [w["reason"] for w in worst] == ["input angle"] * 3
+    assert worst[0]["angle"] == pytest.approx(smallest_angles(sharp).min())
+    assert json.loads(json.dumps(worst)) == worst
+    with pytest.raises(BudgetError) as caught:
+        DelaunayRefinement(max_points=210).generate(DOMAINS["holes"], 0.001)
+    assert {w["reason"] for w in worst_cells(caught.value.mesh)} <= {
+        "narrow gap",
+        "size jump",
+        "budget",
+    }
+    assert worst_cells(DelaunayRefinement().generate(square(), 0.1), 1)[0]["reason"] == (
+        "within the bound"
+    )

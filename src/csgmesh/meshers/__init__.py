@@ -2,5 +2,6 @@
 
 from csgmesh.meshers.constrained_delaunay import ConstrainedDelaunay
 from csgmesh.meshers.delaunay_refinement import DelaunayRefinement
+from csgmesh.meshers.worst import worst_cells
 
-__all__ = ["ConstrainedDelaunay", "DelaunayRefinement"]
+__all__ = ["ConstrainedDelaunay", "DelaunayRefinement", "worst_cells"]

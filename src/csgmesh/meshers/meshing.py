@@ -42,15 +42,15 @@ class Meshing:
     def start(self, pieces: np.ndarray, spacing: Spaced | None = None) -> None:
         """Triangulate the domain, with its segments cut into pieces."""
         self.work = triangulated(self.domain, pieces, self.progress, spacing)
-        self.refine_from_here()
 
-    def refine_from_here(self) -> None:
-        """Make a new refiner of the workspace."""
+    def prepare(self) -> None:
+        """Make a refiner of what is triangulated."""
         self.refiner = Refiner(self.work, self.corners, self.min_angle, self.max_points)
 
     def without_size(self) -> bool:
         """Follow the features alone; False when the budget of points ran out."""
         self.start(pieces_by_turning(self.domain))
+        self.prepare()
         return self.refiner.run()
 
     def uniform(self, size: float) -> bool:
@@ -58,13 +58,14 @@ class Meshing:
         pieces = np.rint(self.domain.lengths() / size).astype(np.int64)
         self.start(self._at_least(pieces))
         fill_with_lattice(self.work, size)
-        self.refine_from_here()
+        self.prepare()
         self.refiner.set_uniform(size)
         return self.refiner.run()
 
     def graded(self, size: ResolvedSize, feature: np.ndarray) -> bool:
         """Mesh with sizes that vary."""
         self.start(pieces_by_turning(self.domain))
+        self.prepare()
         self.refiner.set_sizes()
         sizing = Sizing(self.refiner, size, feature, self.gradation)
         if not sizing.approach():
@@ -76,7 +77,7 @@ class Meshing:
         self.start(pieces, spacing)
         if size.uniform is not None:
             fill_with_lattice(self.work, size.uniform, ground)
-            self.refine_from_here()
+        self.prepare()
         self.refiner.set_background(ground)
         if not self.refiner.run():
             return False
@@ -109,6 +110,7 @@ class Meshing:
         expected = float(self.domain.chord_areas().sum()) * POINTS_PER_AREA / size.uniform**2
         if expected > OVER_BUDGET * self.max_points:
             self.start(pieces_by_turning(self.domain))
+            self.prepare()
             raise BudgetError(
                 f"a size of {size.uniform:g} asks for about {expected:.2g} points in a domain "
                 f"{self.domain.diagonal:.3g} across; max_points is {self.max_points}"
