@@ -8,7 +8,9 @@ import sys
 import tempfile
 import time
 import tracemalloc
+from collections.abc import Iterator
 from functools import partial
+from itertools import islice
 from pathlib import Path
 from typing import Any
 
@@ -27,15 +29,7 @@ GLYPHS = 400
 
 def small(counts: list[int]) -> Rows:
     """Thousands of small domains one after the other, evaluation apart."""
-    from matplotlib.font_manager import FontProperties
-    from matplotlib.textpath import TextPath
-
-    font = FontProperties(family="DejaVu Sans")
-    domains = []
-    for code in range(0x21, 0x21 + 4 * GLYPHS):
-        path = TextPath((0, 0), chr(code), size=64, prop=font)
-        if len(path.codes) and len(domains) < GLYPHS:
-            domains.append(cm.evaluate(cm.Outline.from_path(path.vertices, path.codes)))
+    domains = [cm.evaluate(outline) for outline in islice(_glyphs(), GLYPHS)]
     rounds = max(counts) // 100 // len(domains)
     rows = []
     for angle in (20.0, 30.0):
@@ -53,6 +47,19 @@ def small(counts: list[int]) -> Rows:
             "load": round(os.getloadavg()[0], 1),
         })  # fmt: skip
     return rows
+
+
+def _glyphs() -> Iterator[cm.Shape]:
+    """Outlines of DejaVu Sans, in the order of the font."""
+    from matplotlib import get_data_path
+    from matplotlib.ft2font import FT2Font, LoadFlags
+
+    font = FT2Font(str(Path(get_data_path()) / "fonts" / "ttf" / "DejaVuSans.ttf"))
+    font.set_size(64, 72)
+    for index in range(font.num_glyphs):
+        font.load_glyph(index, flags=LoadFlags.NO_HINTING)
+        if len(font.get_path()[0]):
+            yield cm.Outline.from_path(*font.get_path())
 
 
 def memory(counts: list[int]) -> Rows:
