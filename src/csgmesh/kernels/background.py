@@ -8,7 +8,7 @@ import numpy as np
 from numba import njit
 
 from .pointers import ENTRY, HELPER, pointer
-from .triangulation import following, orient_point
+from .triangulation import following
 
 #: A triangulation and the sizes at its vertices.
 Background = namedtuple("Background", "xy origin twin size")
@@ -28,21 +28,27 @@ def inner(origin, twin, t):
 
 @njit(**HELPER)
 def stroll_to(ground, t, x, y):
-    """The triangle that holds (x, y), or one near it, from triangle t."""
+    """The triangle that holds (x, y), or one near it, from triangle t.
+
+    Rounding may choose the neighbour of the right one, which is as good; it never turns back.
+    """
+    xy = ground.xy
     t = inner(ground.origin, ground.twin, t)
+    entry = t + 3
     for _ in range(LONGEST_WALK):
         here = t
         for e in range(3):
             h = t + e
             a = ground.origin[h]
             b = ground.origin[following(h)]
-            if orient_point(ground.xy, a, b, x, y) < 0.0:
+            left = (xy[2 * b] - xy[2 * a]) * (y - xy[2 * a + 1])
+            if h != entry and left < (xy[2 * b + 1] - xy[2 * a + 1]) * (x - xy[2 * a]):
                 h = ground.twin[h]
                 o = h & ~3
-                if ground.origin[o] | ground.origin[o + 1] | ground.origin[o + 2] < 0:
-                    continue
-                here = o
-                break
+                if ground.origin[o] | ground.origin[o + 1] | ground.origin[o + 2] >= 0:
+                    here = o
+                    entry = h
+                    break
         if here == t:
             return t
         t = here
