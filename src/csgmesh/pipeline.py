@@ -19,9 +19,7 @@ Progress = Callable[[str, int, int], None]
 class Mesher(Protocol):
     """A method: an immutable object of options with one verb."""
 
-    def generate(
-        self, domain: Pslg, size: Any = None, progress: Progress | None = None
-    ) -> Mesh:
+    def generate(self, domain: Pslg, size: Any = None, progress: Progress | None = None) -> Mesh:
         """The mesh of a domain."""
 
 
@@ -81,6 +79,10 @@ def generate(
         raise InputError(
             f"mesher must be an object such as DelaunayRefinement(min_angle=30), got {mesher!r}"
         )
+    if progress is not None and not callable(progress):
+        raise InputError(
+            f"progress must be callable as progress(stage, done, total); got {progress!r}"
+        )
     if progress is not None:
         progress("evaluate", 0, 1)
     domain = evaluate(shape, deviation=deviation, snap=snap)
@@ -112,7 +114,10 @@ def check(mesh: Mesh, shape: Any = None) -> Certificate:
     True
     """
     from csgmesh.measures.certificate import check as verify
+    from csgmesh.mesh import Mesh
 
+    if not isinstance(mesh, Mesh):
+        raise InputError(f"check needs a Mesh, as generate returns; got {type(mesh).__name__}")
     if shape is None:
         return verify(mesh)
     reference = _reference(mesh, shape)

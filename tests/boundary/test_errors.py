@@ -110,3 +110,44 @@ def test_three_regions_share_a_point_and_conform():
     assert pslg.areas() == pytest.approx([2, 1, 1])
     pairs = {tuple(sorted(sides)) for sides in pslg.segment_region.tolist()}
     assert {(0, 1), (0, 2), (1, 2)} <= pairs
+
+
+@pytest.mark.parametrize("value", ["0.1", True, float("nan"), 1j, [0.1]])
+@pytest.mark.parametrize("argument", ["deviation", "snap"])
+def test_tolerances_must_be_numbers(argument, value):
+    with pytest.raises(cm.ShapeError, match=f"{argument} must be a positive, finite number; got"):
+        cm.evaluate(cm.Disk((0, 0), 1), **{argument: value})
+
+
+@pytest.mark.parametrize("thing", [None, 5, "plate.yaml", [cm.Disk((0, 0), 1)], cm.Disk])
+def test_only_shapes_are_evaluated(thing):
+    with pytest.raises(cm.InputError, match="a shape must be a Shape, Regions, Embed or Pslg"):
+        cm.evaluate(thing)
+    with pytest.raises(cm.InputError, match="a shape must be a Shape, Regions, Embed or Pslg"):
+        cm.generate(thing)
+
+
+@pytest.mark.parametrize("factor", [1e100, 1e-100])
+def test_a_tower_of_scalings_beyond_all_floats_ends(factor):
+    shape = cm.Box((0, 0), (1, 1), name="tower")
+    for _ in range(4):
+        shape = shape.scale(factor)
+    for use in (cm.evaluate, lambda s: s.contains([(0.5, 0.5)])):
+        with pytest.raises(cm.ShapeError, match="box 'tower': its transformations together must"):
+            use(shape)
+
+
+@pytest.mark.parametrize("points", [[(5, 5), (6, 6)], [(0.4, 0.5), (0.6, 0.5)]])
+def test_an_embedded_path_all_outside_says_where(points):
+    plate = cm.Box((0, 0), (1, 1)) - cm.Disk((0.5, 0.5), 0.25)
+    with pytest.raises(cm.ShapeError, match=r"embedded path 'crack' from \(.*\) lies outside"):
+        cm.evaluate(cm.Embed(plate, [cm.EmbeddedPath(points, name="crack")]))
+
+
+def test_check_and_progress_say_what_they_need():
+    disk = cm.Disk((0, 0), 1)
+    for wrong in (5, disk):
+        with pytest.raises(cm.InputError, match="check needs a Mesh"):
+            cm.check(wrong, disk)
+    with pytest.raises(cm.InputError, match="progress must be callable"):
+        cm.generate(disk, progress=5)

@@ -32,7 +32,9 @@ def test_a_curve_with_its_control_point_on_its_start_is_a_line():
 
 
 def test_a_curve_that_returns_along_its_tangent_ends_in_a_cusp():
-    outline = cm.Outline([[(2, 2), ("cubic", (3.5, 1.5), (2, 2.5), (3, 2.5)), ("line", (0.5, 2.5))]])
+    outline = cm.Outline(
+        [[(2, 2), ("cubic", (3.5, 1.5), (2, 2.5), (3, 2.5)), ("line", (0.5, 2.5))]]
+    )
     pslg = cm.evaluate(outline)
     x, y = pslg.points[pslg.segments].transpose(2, 0, 1)
     chords = 0.5 * (x[:, 0] * y[:, 1] - x[:, 1] * y[:, 0]).sum()

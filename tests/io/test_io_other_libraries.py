@@ -194,3 +194,9 @@ def test_scikit_fem_second_order_and_quads(curved, quads):
     assert sorted(ends.tolist()) == [[0, 1], [1, 0]]
     with pytest.raises(cm.InputError, match="needs cells of one kind"):
         cm.to_skfem(quads)
+
+
+@pytest.mark.parametrize("convert", [cm.to_skfem, cm.to_meshio])
+def test_only_meshes_are_converted(convert):
+    with pytest.raises(cm.InputError, match="needs a Mesh, as generate returns; got Box"):
+        convert(cm.Box((0, 0), (1, 1)))

@@ -65,3 +65,8 @@ def test_no_cells_and_wrong_meshes():
     solid = Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], {"tetra": [[0, 1, 2, 3]]})
     with pytest.raises(InputError, match="dim 3"):
         quality(solid)
+
+
+def test_only_meshes_have_a_quality():
+    with pytest.raises(InputError, match="quality needs a Mesh, as generate returns; got int"):
+        quality(5)  # type: ignore[arg-type]

@@ -132,3 +132,21 @@ def test_orientations_agree_with_rational_arithmetic(numbers, scale, offset):
     (ax, ay), (bx, by), (cx, cy) = ([Fraction(x) for x in p] for p in points.tolist())
     det = (ax - cx) * (by - cy) - (ay - cy) * (bx - cx)
     assert orientations(points, np.array([[0, 1, 2]]))[0] == (det > 0) - (det < 0)
+
+
+def test_complex_values_keep_their_imaginary_parts():
+    mesh = graded(100)
+    z = mesh.points[:, 0] + 2j * mesh.points[:, 1]
+    at = np.array([[0.4, 0.5], [9, 9]])
+    found = mesh.interpolate(z, at)
+    assert found[0] == pytest.approx(0.4 + 1j) and np.isnan(found[1])
+
+
+def test_no_points_and_no_numbers():
+    mesh = graded(100)
+    assert mesh.locate([]).shape == (0,)
+    assert mesh.interpolate(mesh.points, []).shape == (0, 2)
+    with pytest.raises(InputError, match="points must be an"):
+        mesh.locate("x")
+    with pytest.raises(InputError, match="values must be numbers; got 'x'"):
+        mesh.interpolate("x", [[0, 0]])

@@ -75,4 +75,4 @@ def evaluate(shape: Any, deviation: float | None = None, snap: float | None = No
 def _is_positive(value: Any) -> bool:
     if isinstance(value, bool) or not isinstance(value, Real):
         return False
-    return 0 < value < math.inf
+    return 0 < float(value) < math.inf

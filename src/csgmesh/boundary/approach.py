@@ -21,9 +21,7 @@ _TANGENT = 1e-6
 _SAMPLES = np.linspace(0.0, 1.0, 9)
 
 
-def approaches(
-    pieces: Pieces, pairs: np.ndarray, snap: float
-) -> tuple[np.ndarray, np.ndarray]:
+def approaches(pieces: Pieces, pairs: np.ndarray, snap: float) -> tuple[np.ndarray, np.ndarray]:
     """Pairs and parameters at which the pieces cross, touch or nearly touch.
 
     Returns
@@ -111,9 +109,7 @@ def _subdivide(pieces: Pieces, pairs: np.ndarray, snap: float) -> tuple[np.ndarr
     return np.concatenate(done_row), np.concatenate(done_interval)
 
 
-def _may_meet(
-    ends: list[list[np.ndarray]], sag: np.ndarray, snap: float
-) -> np.ndarray:
+def _may_meet(ends: list[list[np.ndarray]], sag: np.ndarray, snap: float) -> np.ndarray:
     (a0, a1), (b0, b1) = ends
     alive = np.ones(len(a0), bool)
     reach = (sag.sum(1) + snap)[:, None]

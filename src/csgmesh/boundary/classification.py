@@ -20,9 +20,7 @@ from csgmesh.errors import ShapeError
 Code = Sequence[tuple[str, int]]
 
 
-def face_regions(
-    program: Program, arrangement: Arrangement, face: np.ndarray
-) -> np.ndarray:
+def face_regions(program: Program, arrangement: Arrangement, face: np.ndarray) -> np.ndarray:
     """Region of each face, (n_faces,), -1 outside.
 
     Parameters

@@ -358,5 +358,3 @@ def _in_lens(
         # Seen along the curve, the chord lies to the left where the curve bulges to the right.
         out[k] = beyond < 0
     return out
-
-

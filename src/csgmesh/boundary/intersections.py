@@ -126,9 +126,7 @@ def _line_line(pieces: Pieces, pairs: np.ndarray) -> tuple[np.ndarray, np.ndarra
     return pairs[near], t[near]
 
 
-def _line_arc(
-    pieces: Pieces, pairs: np.ndarray, snap: float
-) -> tuple[np.ndarray, np.ndarray]:
+def _line_arc(pieces: Pieces, pairs: np.ndarray, snap: float) -> tuple[np.ndarray, np.ndarray]:
     source = pieces.source[pairs]
     line, arc = pieces.local.data[source[:, 0]], pieces.local.data[source[:, 1]]
     u, v = arc[:, 2:4], arc[:, 4:6]
@@ -157,9 +155,7 @@ def _line_arc(
     return np.concatenate(rows), np.concatenate(ts)
 
 
-def _circle_circle(
-    pieces: Pieces, pairs: np.ndarray, snap: float
-) -> tuple[np.ndarray, np.ndarray]:
+def _circle_circle(pieces: Pieces, pairs: np.ndarray, snap: float) -> tuple[np.ndarray, np.ndarray]:
     source = pieces.source[pairs]
     first, second = pieces.local.data[source[:, 0]], pieces.local.data[source[:, 1]]
     r1, r2 = np.hypot(*first[:, 2:4].T), np.hypot(*second[:, 2:4].T)
@@ -204,9 +200,7 @@ def _turned_into(theta: np.ndarray, pieces: Pieces, piece: np.ndarray) -> np.nda
     return theta + 2 * np.pi * np.round((middle - theta) / (2 * np.pi))
 
 
-def _ends_on(
-    pieces: Pieces, pairs: np.ndarray, snap: float
-) -> tuple[np.ndarray, np.ndarray]:
+def _ends_on(pieces: Pieces, pairs: np.ndarray, snap: float) -> tuple[np.ndarray, np.ndarray]:
     """Ends of the first of each pair that lie on the second, if not at one of its own ends."""
     local = pieces.local
     i, j = pairs.T

@@ -41,6 +41,7 @@ def evaluate_plane(shape: Any, deviation: float | None, snap: float | None) -> P
     _, face = planar_map(arrangement, local_snap)
     region = face_regions(program, arrangement, face)
     kept = chains(program, arrangement, face, region)
+    _refuse_lost_paths(program, kept)
     chords = flatten(arrangement, kept, deviation, local_snap)
     probe_marker, names = _probe_markers(program, kept.names, [len(p) for p in probes])
     return _pslg(
@@ -111,6 +112,18 @@ def _pslg(
 def _largest_sag(pieces: Any, kept: Chains, chords: Chords) -> float:
     bend = pieces.curves.second_derivative_bounds()[kept.source[chords.chain]]
     return float(((chords.t1 - chords.t0) ** 2 * bend / 8).max(initial=0.0))
+
+
+def _refuse_lost_paths(program: Program, kept: Chains) -> None:
+    if not program.paths:
+        return
+    found = {name for marker in np.unique(kept.marker).tolist() for name in kept.names[marker]}
+    for name, points in program.paths:
+        if name not in found:
+            x, y = points[0]
+            raise ShapeError(
+                f"embedded path {name!r} from ({x:.6g}, {y:.6g}) lies outside the domain all along"
+            )
 
 
 def _refuse_outside(

@@ -53,9 +53,7 @@ def counterclockwise(arrangement: Arrangement, snap: float) -> np.ndarray:
     turned = (a - a[widest][group]) % (2 * np.pi)
     turned[widest] = 0.0
     resort = np.lexsort((turned, group))
-    everyone[busy] = _settle_ties(
-        arrangement, order[resort], turned[resort], group[resort], snap
-    )
+    everyone[busy] = _settle_ties(arrangement, order[resort], turned[resort], group[resort], snap)
     return everyone
 
 
@@ -74,9 +72,7 @@ def _settle_ties(
     return order
 
 
-def _is_right_of(
-    arrangement: Arrangement, a: np.ndarray, b: np.ndarray, snap: float
-) -> np.ndarray:
+def _is_right_of(arrangement: Arrangement, a: np.ndarray, b: np.ndarray, snap: float) -> np.ndarray:
     """Whether half-edge a leaves clockwise of half-edge b, which has nearly its direction."""
     tail = half_edge_tails(arrangement)
     origin = arrangement.vertices[tail[a]]

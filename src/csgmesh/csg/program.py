@@ -8,6 +8,7 @@ from functools import cached_property
 import numpy as np
 
 from csgmesh.csg import matrices
+from csgmesh.csg.checks import LARGEST, SMALLEST
 from csgmesh.csg.embed import Embed, EmbeddedPath
 from csgmesh.csg.extent import code_bounds
 from csgmesh.csg.membership import Classifier
@@ -17,6 +18,7 @@ from csgmesh.csg.primitive import Frame
 from csgmesh.csg.primitives.half_space import HalfSpace
 from csgmesh.csg.regions import Regions
 from csgmesh.domain.curves import Curves
+from csgmesh.errors import ShapeError
 
 #: Postfix: ``("leaf", i)``, then operations with how many values they take.
 Code = tuple[tuple[str, int], ...]
@@ -227,9 +229,22 @@ class _Compiler:
         if number is None:
             number = self._numbers[key] = len(self.leaves)
             name = self.namer.named(prefix, primitive.name, primitive.kind)
-            if placement not in self._arrays:
-                self._arrays[placement] = (np.array(placement[0]), np.array(placement[1]))
             label = f"{primitive.kind.replace('_', ' ')} {name!r}"
+            if placement not in self._arrays:
+                matrix, offset = np.array(placement[0]), np.array(placement[1])
+                _refuse_far(matrix, offset, label)
+                self._arrays[placement] = (matrix, offset)
             names = part_names(name, primitive.parts)
             self.leaves.append(Leaf(primitive, *self._arrays[placement], names, label))
         return number
+
+
+def _refuse_far(matrix: np.ndarray, offset: np.ndarray, label: str) -> None:
+    stretch = np.abs(matrix).max(axis=1)
+    # Written so that NaN, from infinity times zero, is refused too.
+    if not ((stretch >= SMALLEST) & (stretch <= LARGEST) & (np.abs(offset) <= LARGEST)).all():
+        raise ShapeError(
+            f"{label}: its transformations together must scale by {SMALLEST:g} to {LARGEST:g} and "
+            f"shift by at most {LARGEST:g}; they scale by {stretch.max():g} and shift by "
+            f"{tuple(offset.tolist())}"
+        )

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from csgmesh.errors import FileFormatError
+from csgmesh.errors import FileFormatError, InputError
 from csgmesh.io.assemble import Listing
 from csgmesh.io.members import members
 from csgmesh.mesh import KINDS, Mesh
@@ -47,6 +47,8 @@ def to_meshio(mesh: Mesh) -> meshio.Mesh:
     >>> sorted(cm.to_meshio(mesh).cell_sets)
     ['domain', 'wall']
     """
+    if not isinstance(mesh, Mesh):
+        raise InputError(f"to_meshio needs a Mesh, as generate returns; got {type(mesh).__name__}")
     import meshio
 
     blocks = [*mesh.cells.items(), *mesh.facets.items()]

@@ -52,6 +52,8 @@ def to_skfem(mesh: Mesh) -> skfem.Mesh:
     >>> cm.to_skfem(mesh).boundaries
     {'wall': array([0], dtype=int32)}
     """
+    if not isinstance(mesh, Mesh):
+        raise InputError(f"to_skfem needs a Mesh, as generate returns; got {type(mesh).__name__}")
     kinds = [kind for kind, rows in mesh.cells.items() if len(rows)]
     if len(kinds) != 1 or kinds[0] not in _CLASSES:
         raise InputError(f"to_skfem needs cells of one kind of {list(_CLASSES)}; got {kinds}")

@@ -141,6 +141,8 @@ def quality(mesh: Mesh) -> Quality:
     smallest angle of the cells
       40 to 50   2  ########################################
     """
+    if not isinstance(mesh, Mesh):
+        raise InputError(f"quality needs a Mesh, as generate returns; got {type(mesh).__name__}")
     if mesh.dim != 2:
         raise InputError(f"quality measures plane meshes; this one has dim {mesh.dim}")
     parts = []

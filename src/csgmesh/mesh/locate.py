@@ -8,6 +8,7 @@ predicate decides.
 
 from __future__ import annotations
 
+import reprlib
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
@@ -99,7 +100,10 @@ class Locator:
 
     def interpolate(self, values: ArrayLike, points: ArrayLike) -> np.ndarray:
         """Values at points from values at the corners; NaN outside."""
-        given = np.asarray(values, float)
+        given = np.asarray(values)
+        if given.dtype.kind not in "biufc":
+            raise InputError(f"values must be numbers; got {reprlib.repr(values)}")
+        given = given.astype(np.complex128 if given.dtype.kind == "c" else np.float64)
         if given.ndim not in (1, 2) or len(given) != len(self.points):
             raise InputError(
                 f"values must have shape ({len(self.points)},) or ({len(self.points)}, k), "
@@ -108,7 +112,7 @@ class Locator:
         queries = _queries(points)
         cell = self.cells_of(queries)
         columns = given.reshape(len(given), -1)
-        out = np.full((len(queries), columns.shape[1]), np.nan)
+        out = np.full((len(queries), columns.shape[1]), np.nan, given.dtype)
         before = 0
         for kind, rows in self.cells.items():
             at = np.flatnonzero((cell >= before) & (cell < before + len(rows)))
@@ -187,7 +191,14 @@ def _range(x: np.ndarray, triangles: np.ndarray) -> tuple[np.ndarray, np.ndarray
 
 
 def _queries(points: ArrayLike) -> np.ndarray:
-    queries = np.asarray(points, float)
+    try:
+        queries = np.asarray(points, float)
+    except (TypeError, ValueError):
+        raise InputError(
+            f"points must be an (n, 2) array of numbers; got {reprlib.repr(points)}"
+        ) from None
+    if queries.size == 0:
+        return np.zeros((0, 2))
     if queries.ndim != 2 or queries.shape[1] != 2:
         raise InputError(f"points must have shape (n, 2); got {queries.shape}")
     return queries
