@@ -14,7 +14,7 @@ FROM_VERTEX = 0.7
 FROM_SEGMENT = 0.5
 #: Where sizes sink below this share of the lattice's, it ends; above, its triangles are not yet too
 #: large for refinement.
-NEARLY = 0.8
+NEARLY = 0.95
 
 
 def fill_with_lattice(work: Workspace, size: float, ground: Background | None = None) -> None:
