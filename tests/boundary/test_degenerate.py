@@ -93,3 +93,11 @@ def test_vertex_pairs_of_real_outlines_are_cleaned_up():
         assert pslg.n_segments == 6
         assert pslg.areas()[0] == pytest.approx(4.0, abs=1e-11)
         assert pslg.report.largest_displacement <= 2 * gap
+
+
+@pytest.mark.parametrize("label", [k for k in CASES if "touching" in k or "tangent" in k])
+@pytest.mark.parametrize("degrees", [0, 17, 123])
+def test_a_contact_is_one_vertex_however_it_is_turned(label, degrees):
+    pslg = cm.evaluate(CASES[label][0].rotate(degrees))
+    ends = pslg.points[pslg.segments]
+    assert np.hypot(*(ends[:, 1] - ends[:, 0]).T).min() > 1e-3

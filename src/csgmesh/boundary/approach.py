@@ -179,14 +179,15 @@ def _one_of_each(
     """One candidate for each crossing and for each stretch within the snap distance.
 
     Neighbouring parameter boxes find the same crossing, and a touching is found all along the
-    stretch on which the curves are within the snap distance: its closest point stands for it.
+    stretch on which the curves are within the snap distance: its closest point stands for it, also
+    where the curves cross twice and what they enclose is thinner than that.
     """
     p, q = local.points(i, t[:, 0]), local.points(j, t[:, 1])
     order = np.lexsort((t[:, 0], rows[:, 1], rows[:, 0]))
     a, b = order[:-1], order[1:]
     same = (rows[a] == rows[b]).all(1)
     equal = same & (np.hypot(*(p[a] - p[b]).T) <= snap / 2)
-    k = np.flatnonzero(same & ~equal & ~(crossed[a] & crossed[b]))
+    k = np.flatnonzero(same & ~equal)
     middle = 0.5 * (t[a[k]] + t[b[k]])
     gap = local.points(i[a[k]], middle[:, 0]) - local.points(j[a[k]], middle[:, 1])
     joined = equal

@@ -140,10 +140,12 @@ def _line_arc(pieces: Pieces, pairs: np.ndarray, snap: float) -> tuple[np.ndarra
     length = np.hypot(*r.T)
     foot = -(p * r).sum(1) / length**2
     distance = np.abs(cross(p, r)) / length
-    # Where the line only touches, or misses by less than the snap distance, the foot stands in.
     height = np.sqrt(np.maximum((1 - distance) * (1 + distance), 0.0))
+    # Where the line misses, or cuts off, less than the snap distance, the foot is the one vertex:
+    # two would lie apart by the root of a rounding error.
     axes = np.linalg.norm(arc[:, 2:6].reshape(-1, 2, 2), axis=2).max(axis=1)
-    touching = (height == 0) & ((distance - 1) * axes <= 4 * snap)
+    touching = np.abs(distance - 1) * axes <= snap
+    height[touching] = 0.0
     rows, ts = [], []
     for sign in (-1.0, 1.0):
         at = np.flatnonzero((height > 0) | (touching & (sign < 0)))
@@ -174,7 +176,8 @@ def _circle_circle(pieces: Pieces, pairs: np.ndarray, snap: float) -> tuple[np.n
     # Heron's product keeps the digits where two circles nearly touch.
     product = (d + r1 + r2) * (r1 + r2 - d) * (d + r1 - r2) * (d - r1 + r2)
     height = np.sqrt(np.maximum(product, 0.0)) / (2 * d)
-    touching = apart >= 0
+    # Where the circles miss, or overlap by, less than the snap distance, they touch in one vertex.
+    touching = apart >= -snap
     foot = np.where(touching, np.where(d >= np.maximum(r1, r2), r1, np.sign(r1 - r2) * r1), foot)
     height = np.where(touching, 0.0, height)
     rows, ts = [], []
