@@ -31,6 +31,14 @@ AREA_SHARE = 1e-12
 EXPECTED_SHARE = 1e-9
 
 
+#: Largest magnitude of a coordinate or size. Predicates multiply up to three differences of
+#: coordinates; beyond this their products leave the range of double precision.
+LARGEST = 1e100
+
+#: Smallest size (radius, semi-axis, side): its square must not underflow.
+SMALLEST = 1e-100
+
+
 def coordinate_ulp(*arrays: np.ndarray) -> float:
     """`ULPS` units in the last place of the largest coordinate.
 

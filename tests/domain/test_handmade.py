@@ -99,3 +99,16 @@ def test_what_a_pslg_refuses(arguments, message):
 
 def test_one_segment_number_is_a_name_s_segment():
     assert cm.Pslg(SQUARE, LOOP, names={"floor": 0}).boundary_names[0] == ("floor",)
+
+
+@pytest.mark.parametrize(
+    "scale, message", [(1e101, "at most 1e\\+100"), (1e-101, "wider than 1e-100")]
+)
+def test_coordinates_beyond_the_range_of_predicates_are_refused(scale, message):
+    with pytest.raises(cm.InputError, match=message):
+        cm.Pslg(np.array(SQUARE) * scale, LOOP)
+
+
+def test_points_on_one_line_enclose_nothing():
+    with pytest.raises(cm.InputError, match=r"in x and y, got \(0.0, 0.0\) to \(2.0, 0.0\)"):
+        cm.Pslg([(0, 0), (1, 0), (2, 0)], [(0, 1), (1, 2), (2, 0)])

@@ -194,3 +194,11 @@ def test_without_a_notebook_nothing_happens(monkeypatch):
     assert not notebook.register_if_active()
     monkeypatch.delitem(sys.modules, "IPython")
     assert not notebook.register_if_active()
+
+
+def test_edges_are_drawn_though_most_cells_crowd_in_a_corner():
+    from csgmesh.viz.paint import edge_width
+    from csgmesh.viz.scene import mesh_scene
+
+    mesh = cm.generate(cm.Box((0, 0), (1, 1)) - cm.Disk((0.5, 0.5), 1e-7))
+    assert edge_width(mesh_scene(mesh), 500.0) > 0

@@ -7,12 +7,11 @@ from typing import cast
 
 import numpy as np
 
-from csgmesh.csg.checks import LARGEST
 from csgmesh.csg.primitives.half_space import HalfSpace
 from csgmesh.csg.program import Leaf, Program
 from csgmesh.domain.curves import ARC, CUBIC, LINE, QUADRATIC, WIDTH, Curves
 from csgmesh.errors import EmptyDomainError, ShapeError
-from csgmesh.tolerance import SNAP_SHARE, coordinate_ulp
+from csgmesh.tolerance import LARGEST, SNAP_SHARE, coordinate_ulp
 
 #: Margin of the working frame beyond the domain, as shares of its extent: no user's box has them.
 _MARGIN = np.array([0.1371, 0.1513])

@@ -14,13 +14,7 @@ import numpy as np
 
 from csgmesh.domain.names import name_flaw
 from csgmesh.errors import ShapeError
-
-#: Largest magnitude of a coordinate or size. Predicates multiply up to three differences of
-#: coordinates; beyond this their products leave the range of double precision.
-LARGEST = 1e100
-
-#: Smallest size (radius, semi-axis, side): its square must not underflow.
-SMALLEST = 1e-100
+from csgmesh.tolerance import LARGEST, SMALLEST
 
 
 def number(value: Any, what: str, where: str) -> float:

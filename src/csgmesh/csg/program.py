@@ -8,7 +8,6 @@ from functools import cached_property
 import numpy as np
 
 from csgmesh.csg import matrices
-from csgmesh.csg.checks import LARGEST, SMALLEST
 from csgmesh.csg.embed import Embed, EmbeddedPath
 from csgmesh.csg.extent import code_bounds
 from csgmesh.csg.membership import Classifier
@@ -19,6 +18,7 @@ from csgmesh.csg.primitives.half_space import HalfSpace
 from csgmesh.csg.regions import Regions
 from csgmesh.domain.curves import Curves
 from csgmesh.errors import ShapeError
+from csgmesh.tolerance import LARGEST, SMALLEST
 
 #: Postfix: ``("leaf", i)``, then operations with how many values they take.
 Code = tuple[tuple[str, int], ...]

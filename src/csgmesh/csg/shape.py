@@ -12,6 +12,7 @@ import numpy as np
 from csgmesh.csg import checks, matrices
 from csgmesh.csg.matrices import Matrix, Vector
 from csgmesh.errors import ShapeError
+from csgmesh.tolerance import SMALLEST
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -141,7 +142,7 @@ class Shape(ABC):
             factors: Vector = (checks.number(s, "the factor", "scale"),) * self.dim
         else:
             factors = checks.vector(s, "the factors", "scale", self.dim)
-        if any(abs(f) < checks.SMALLEST for f in factors):
+        if any(abs(f) < SMALLEST for f in factors):
             raise ShapeError(f"scale: no factor may be zero; got {s!r}")
         return self._about(matrices.diagonal(factors), center, "scale")
 

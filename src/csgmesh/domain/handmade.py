@@ -14,7 +14,7 @@ from csgmesh.domain.rays import UpwardRays, sides
 from csgmesh.domain.report import Report
 from csgmesh.errors import InputError
 from csgmesh.spatial import Boxes
-from csgmesh.tolerance import coordinate_ulp
+from csgmesh.tolerance import LARGEST, SMALLEST, coordinate_ulp
 
 UNNAMED = "boundary"
 
@@ -85,9 +85,12 @@ def _arrays(points: Any, segments: Any) -> tuple[np.ndarray, np.ndarray]:
         raise InputError(f"points must have shape (n, 2), got {xy.shape}")
     if seg.ndim != 2 or seg.shape[1:] != (2,) or not np.issubdtype(seg.dtype, np.integer):
         raise InputError(f"segments must be (m, 2) integers, got {seg.dtype} of shape {seg.shape}")
-    bad = np.flatnonzero(~np.isfinite(xy).all(1))
+    bad = np.flatnonzero(~(np.abs(xy) <= LARGEST).all(1))
     if len(bad):
-        raise InputError(f"points must be finite, point {bad[0]} is {tuple(xy[bad[0]].tolist())}")
+        raise InputError(
+            f"points must be finite and at most {LARGEST:g} in size, "
+            f"point {bad[0]} is {tuple(xy[bad[0]].tolist())}"
+        )
     out = np.flatnonzero(((seg < 0) | (seg >= len(xy))).any(1))
     if len(out):
         raise InputError(
@@ -97,6 +100,9 @@ def _arrays(points: Any, segments: Any) -> tuple[np.ndarray, np.ndarray]:
     if len(seg) < 3:
         raise InputError(f"a domain needs at least 3 segments, got {len(seg)}")
     used, number = np.unique(seg, return_inverse=True)
+    if np.ptp(xy[used], axis=0).min() < SMALLEST:
+        lo, hi = (tuple(corner(xy[used], axis=0).tolist()) for corner in (np.min, np.max))
+        raise InputError(f"a domain must be wider than {SMALLEST:g} in x and y, got {lo} to {hi}")
     _refuse_repeats(xy, used, seg)
     return xy[used], number.reshape(-1, 2).astype(np.int64)
 

@@ -11,6 +11,7 @@ from csgmesh.csg import checks
 from csgmesh.csg.primitive import Frame, Primitive
 from csgmesh.domain.curves import Curves
 from csgmesh.errors import ShapeError
+from csgmesh.tolerance import SMALLEST
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -55,7 +56,7 @@ class Box(Primitive):
         if len(low) == 3:
             raise ShapeError(f"{where}: boxes in space are not there yet; got lo {low}, hi {high}")
         for a, b in zip(low, high, strict=True):
-            if not b - a >= checks.SMALLEST:
+            if not b - a >= SMALLEST:
                 raise ShapeError(
                     f"{where}: lo must be below hi in every coordinate; got {low} and {high}"
                 )
