@@ -9,6 +9,7 @@
 
 from __future__ import annotations
 
+import sys
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
@@ -186,3 +187,9 @@ def load_ipython_extension(ipython: Any) -> None:
     from csgmesh.viz.notebook import register
 
     register(ipython)
+
+
+if "IPython" in sys.modules:  # In a notebook things show themselves without being asked.
+    from csgmesh.viz.notebook import register_if_active
+
+    register_if_active()

@@ -90,7 +90,7 @@ def test_lookups():
     assert mesh.interface("*", "*")["line"].tolist() == [6]
     with pytest.raises(NameLookupError, match=r"'a.botom'; did you mean 'a.bottom'"):
         mesh.boundary("a.botom")
-    with pytest.raises(NameLookupError, match="did you mean 'rock'"):
+    with pytest.raises(NameLookupError, match="no region matches 'rok'; did you mean 'rock'"):
         mesh.region("rok")
 
 

@@ -1,5 +1,6 @@
 """Pictures: what is in them, and that the same input gives the same bytes."""
 
+import subprocess
 import sys
 import types
 
@@ -194,6 +195,21 @@ def test_without_a_notebook_nothing_happens(monkeypatch):
     assert not notebook.register_if_active()
     monkeypatch.delitem(sys.modules, "IPython")
     assert not notebook.register_if_active()
+
+
+def test_importing_into_a_notebook_is_enough():
+    script = """
+import sys, types
+found = []
+svg = types.SimpleNamespace(for_type_by_name=lambda module, name, function: found.append(name))
+display = types.SimpleNamespace(formatters={"image/svg+xml": svg})
+shell = types.SimpleNamespace(display_formatter=display)
+sys.modules["IPython"] = types.SimpleNamespace(get_ipython=lambda: shell)
+import csgmesh
+print(*sorted(found), "matplotlib" in sys.modules)
+"""
+    run = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
+    assert run.stdout.split() == ["Embed", "Mesh", "Pslg", "Regions", "Shape", "False"]
 
 
 def test_edges_are_drawn_though_most_cells_crowd_in_a_corner():

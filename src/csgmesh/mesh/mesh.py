@@ -343,7 +343,7 @@ class Mesh:
     def _regions(self, pattern: str) -> np.ndarray:
         from csgmesh.domain.names import find_names
 
-        found = set(find_names(pattern, self.region_names))
+        found = set(find_names(pattern, self.region_names, what="region"))
         return np.array([i for i, name in enumerate(self.region_names) if name in found])
 
     @cached_property
