@@ -22,6 +22,8 @@ _MOVES = np.array([[1, 1, 0, 0], [1, 0, 0, 0], [1, 1, 1, 0], [1, 1, 1, 1]], floa
 _GAUSS_X, _GAUSS_W = np.polynomial.legendre.leggauss(12)
 _PANELS = 8
 _SAMPLES = 17
+#: Steps after which a projection must have settled.
+_NEWTON_STEPS = 60
 
 
 @dataclass(frozen=True, eq=False)
@@ -287,15 +289,21 @@ class Curves:
         """Newton's method for the nearest point, within one sample of the start."""
         step = (hi - lo) / (_SAMPLES - 1)
         low, high = np.maximum(t - step, lo), np.minimum(t + step, hi)
-        for _ in range(12):
-            r = self.points(i, t) - points
-            d1, d2 = self.derivatives(i, t), self.second_derivatives(i, t)
+        t, going = t.copy(), np.arange(len(t))
+        # Five steps do as a rule; at the tip of a hairpin Newton's method begins slowly.
+        for _ in range(_NEWTON_STEPS):
+            if not len(going):
+                break
+            on, at = i[going], t[going]
+            r = self.points(on, at) - points[going]
+            d1, d2 = self.derivatives(on, at), self.second_derivatives(on, at)
             slope = (d1 * d1).sum(1) + (r * d2).sum(1)
             # Away from convexity fall back on Gauss-Newton, which always descends.
             slope = np.where(slope > 0, slope, (d1 * d1).sum(1))
             with np.errstate(divide="ignore", invalid="ignore"):
                 change = np.where(slope > 0, (r * d1).sum(1) / slope, 0.0)
-            t = np.clip(t - change, low, high)
+            t[going] = np.clip(at - change, low[going], high[going])
+            going = going[np.abs(t[going] - at) > np.spacing(np.abs(at))]
         return t
 
 
