@@ -15,6 +15,10 @@ from csgmesh.boundary.intersections import Meetings, candidate_pairs, meetings, 
 from csgmesh.boundary.pieces import Frame, Pieces
 from csgmesh.domain.curves import LINE
 from csgmesh.spatial import Boxes, near_pairs
+from csgmesh.tolerance import ON_CURVE_SHARE
+
+#: Where two pieces meet, their points differ by what solving for it left, which is no merge.
+_MET = ON_CURVE_SHARE / 4
 
 
 @dataclass(frozen=True, eq=False)
@@ -116,7 +120,19 @@ def arrange(pieces: Pieces, frame: Frame, probes: np.ndarray, snap: float) -> Ar
         np.concatenate([at, near_vertex]),
     )
     edges = _cut(pieces, piece, t, at)
-    merged = _displacements(cloud, user, owner, representative, vertices, points, vertex, frame)
+    met = slice(2 * k, None)
+    moved = _displacements(
+        vertices,
+        np.concatenate([cloud, pieces.local.points(pieces.source[piece[met]], t[met])]),
+        np.concatenate([vertex, at[met]]),
+        np.concatenate([owner, piece[met]]),
+        np.repeat(_roundings(frame), [len(cloud), len(piece[met])]),
+    )
+    merged = Merged(
+        points[moved.vertex],
+        moved.distance * frame.scale,
+        np.column_stack([moved.piece, owner[chosen][moved.vertex]]),
+    )
     return _merge_coincident(pieces, vertices, points, edges, vertex[2 * k + e :], merged, snap)
 
 
@@ -347,22 +363,32 @@ def _run_along(
     return out
 
 
+@dataclass(frozen=True, eq=False)
+class _Moved:
+    vertex: np.ndarray
+    distance: np.ndarray
+    piece: np.ndarray
+
+
+def _roundings(frame: Frame) -> tuple[float, float]:
+    """Distances that mean nothing: of equal points, and of two pieces where they meet."""
+    same = 64 * np.finfo(float).eps + 4 * np.spacing(np.abs(frame.centre).max()) / frame.scale
+    return float(same), max(float(same), _MET)
+
+
 def _displacements(
-    cloud: np.ndarray,
-    user: np.ndarray,
-    owner: np.ndarray,
-    representative: np.ndarray,
     vertices: np.ndarray,
-    points: np.ndarray,
+    places: np.ndarray,
     vertex: np.ndarray,
-    frame: Frame,
-) -> Merged:
-    off = np.hypot(*(cloud - vertices[vertex]).T)
-    rounding = 64 * np.finfo(float).eps + 4 * np.spacing(np.abs(frame.centre).max()) / frame.scale
+    piece: np.ndarray,
+    rounding: np.ndarray,
+) -> _Moved:
+    """For each vertex the place, and a piece there, that moved furthest to become it.
+
+    A meeting stands on one of its pieces, and may be the snap distance away from the other.
+    """
+    off = np.hypot(*(places - vertices[vertex]).T)
     far = np.flatnonzero(off > rounding)
-    # One line a vertex: the point that moved furthest.
     order = far[np.lexsort((far, -off[far], vertex[far]))]
     first = order[np.r_[True, vertex[order][1:] != vertex[order][:-1]]] if len(order) else order
-    distance = off[first] * frame.scale
-    piece = np.column_stack([owner[first], owner[representative[first]]])
-    return Merged(points[vertex[first]], distance, piece)
+    return _Moved(vertex[first], off[first], piece[first])

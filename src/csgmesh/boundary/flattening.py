@@ -100,22 +100,25 @@ def _without_conflicts(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Chain and start parameter of chords, halved until none is in conflict with another."""
     local, vertices = arrangement.pieces.local, arrangement.vertices
-    stuck = np.zeros(0, bool)
     for _ in range(_ROUNDS):
         chords = _chords(local, vertices, chains, chain, begin)
         halve, stuck = _conflicts(arrangement, chains, chords, suspects, snap)
+        if stuck.any():
+            first = np.flatnonzero(stuck)[:1]
+            x, y = arrangement.pieces.curves.points(chains.source[chain[first]], begin[first])[0]
+            raise EvaluationError(
+                f"boundaries near ({x:.6g}, {y:.6g}) come closer than rounding can keep apart; "
+                "give a larger snap"
+            )
         if not halve.any():
             break
+        # Only where a chain has new chords can there be new conflicts.
+        changed = np.zeros(len(chains.source), bool)
+        changed[chain[halve]] = True
+        suspects = suspects[changed[suspects].any(axis=1)]
         middle = 0.5 * (chords.t0 + chords.t1)[halve]
         at = np.flatnonzero(halve) + 1
         chain, begin = np.insert(chain, at, chain[halve]), np.insert(begin, at, middle)
-    if stuck.any():
-        first = np.flatnonzero(stuck)[:1]
-        x, y = arrangement.pieces.curves.points(chains.source[chain[first]], begin[first])[0]
-        raise EvaluationError(
-            f"boundaries near ({x:.6g}, {y:.6g}) come closer than rounding can keep apart; "
-            "give a larger snap"
-        )
     return chain, begin
 
 
