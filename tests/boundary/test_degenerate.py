@@ -101,3 +101,15 @@ def test_a_contact_is_one_vertex_however_it_is_turned(label, degrees):
     pslg = cm.evaluate(CASES[label][0].rotate(degrees))
     ends = pslg.points[pslg.segments]
     assert np.hypot(*(ends[:, 1] - ends[:, 0]).T).min() > 1e-3
+
+
+@pytest.mark.parametrize("gap", [2e-10, -2e-10])
+@pytest.mark.parametrize("degrees", [0.0, 23.0, 141.0])
+def test_a_touching_over_less_than_the_snap_distance_is_reported_and_passes_the_check(gap, degrees):
+    disks = cm.Disk((-1, 0), 1, name="a") | cm.Disk((0.7 + gap, 0), 0.7, name="b")
+    shape = cm.Box((-3, -3), (3, 3)) - disks.rotate(degrees)
+    pslg = cm.evaluate(shape)
+    (merge,) = pslg.report.merges
+    assert merge.distance == pytest.approx(abs(gap), rel=1e-3)
+    assert merge.leaves == ("disk 'a'", "disk 'b'")
+    assert cm.check(cm.generate(pslg, cm.ConstrainedDelaunay()), shape).ok
