@@ -7,6 +7,8 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pytest
+
 import csgmesh
 from csgmesh.kernels import cache
 
@@ -39,8 +41,44 @@ def test_importing_the_meshers_does_not_import_numba() -> None:
 
 def test_the_directory_follows_the_sources_and_the_user(tmp_path, monkeypatch) -> None:
     monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path))
-    assert cache.cache_directory() == tmp_path / f"csgmesh-{cache.source_key()}"
+    key = cache.source_key("delaunay")
+    assert cache.cache_directory("delaunay") == tmp_path / "csgmesh" / f"delaunay-{key}"
     assert cache.must_compile()
+
+
+@pytest.fixture
+def kernel_folder(tmp_path, monkeypatch):
+    """Kernel modules that call one another, and one that none of them calls."""
+    (tmp_path / "family").mkdir()
+    (tmp_path / "family" / "entry.py").write_text("from ..callee import f\n")
+    (tmp_path / "callee.py").write_text("from . import other, deepest\n")
+    (tmp_path / "deepest.py").write_text("")
+    (tmp_path / "other.py").write_text("")
+    (tmp_path / "stranger.py").write_text("")
+    monkeypatch.setattr(cache, "HERE", tmp_path)
+    yield tmp_path
+    cache.source_key.cache_clear()
+    cache.callees.cache_clear()
+
+
+def key_of_entry() -> str:
+    cache.source_key.cache_clear()
+    cache.callees.cache_clear()
+    return cache.source_key("family.entry")
+
+
+@pytest.mark.parametrize("module", ["family/entry", "callee", "deepest", "other"])
+def test_machine_code_goes_stale_with_any_callee(kernel_folder, module) -> None:
+    before = key_of_entry()
+    with (kernel_folder / f"{module}.py").open("a") as file:
+        file.write("# edited\n")
+    assert key_of_entry() != before
+
+
+def test_machine_code_outlives_edits_of_strangers(kernel_folder) -> None:
+    before = key_of_entry()
+    (kernel_folder / "stranger.py").write_text("# edited\n")
+    assert key_of_entry() == before
 
 
 def test_the_interpreter_runs_the_same_source() -> None:

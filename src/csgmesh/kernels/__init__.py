@@ -7,11 +7,12 @@ the kernels; the first call ever of a kernel compiles it, once, into a cache on 
 from __future__ import annotations
 
 import importlib
+import sys
 import warnings
 from types import ModuleType
 from typing import Any
 
-from .cache import cache_directory, must_compile
+from .cache import cache_directory, callees, must_compile
 
 __all__ = ["cache_directory", "must_compile"]
 
@@ -38,13 +39,17 @@ _HOME = {
 
 
 def _load(name: str) -> ModuleType:
-    """Import a kernel module with the cache directory in place, and put the user's back."""
+    """Import a kernel module, each of its callees first, into the directory of its own sources."""
+    if f"{__name__}.{name}" in sys.modules:
+        return sys.modules[f"{__name__}.{name}"]
     import numba
 
+    for callee in callees(name):
+        _load(callee)
     settings: Any = numba.config
     kept = settings.CACHE_DIR
     try:
-        directory = cache_directory()
+        directory = cache_directory(name)
         directory.mkdir(parents=True, exist_ok=True)
         settings.CACHE_DIR = str(directory)
         return importlib.import_module(f".{name}", __name__)
@@ -54,8 +59,7 @@ def _load(name: str) -> ModuleType:
             RuntimeWarning,
             stacklevel=3,
         )
-        from . import pointers
-
+        pointers = importlib.import_module(".pointers", __name__)
         pointers.ENTRY["cache"] = False
         return importlib.import_module(f".{name}", __name__)
     finally:
