@@ -24,6 +24,7 @@ _HOME = {
     "flood_regions": "segments",
     "fill": "lattice",
     "refine": "refinement",
+    "mark_used": "export",
     "extract": "export",
     "look_up": "background",
     "limit_gradation": "gradation",

@@ -20,52 +20,53 @@ def assemble(work: Workspace, info: Mapping[str, object]) -> Mesh:
     Takes the workspace apart, so that it and the mesh are never both in memory.
     """
     domain = work.domain
-    cells, regions, used = _cells(work)
-    number = _numbering(work, used)
-    points = work.points[: 2 * work.n_points].reshape(-1, 2)
-    new_points = np.empty((int(used.sum()), 2))
-    new_points[number[used]] = points[used]
+    source, number, cells, regions = _cells(work)
     facets = _facets(work, number)
+    markers = _point_markers(work, len(source), number)
+    points = work.points[: 2 * work.n_points].reshape(-1, 2).take(source, axis=0)
+    # A mesh takes over arrays that nobody can write to, and copies others.
+    for array in (points, cells, regions, markers):
+        array.flags.writeable = False
     return Mesh(
-        points=new_points,
-        cells={"triangle": number[cells]},
+        points=points,
+        cells={"triangle": cells},
         cell_region={"triangle": regions},
         region_names=domain.region_names,
         boundary_names=domain.boundary_names,
-        point_marker=_point_markers(work, used, number),
+        point_marker=markers,
         curves=domain.curves,
         domain=domain,
-        info={**info, "n_points": len(new_points), "n_cells": len(cells)},
+        info={**info, "n_points": len(points), "n_cells": len(cells)},
         **facets,
     )
 
 
-def _cells(work: Workspace) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    cells = np.empty((work.n_triangles, 3), np.int32)
-    regions = np.empty(work.n_triangles, np.int64)
-    used = np.zeros(work.n_points, np.bool_)
-    n = kernels.extract(
-        work.origin, work.twin, work.n_triangles, cells.reshape(-1), regions, used.view(np.uint8)
-    )
+def _cells(work: Workspace) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """Vertices in the mesh's order, their numbers there, and the triangles with their regions.
+
+    The mesh has the domain's points in their order, then the others; those that no triangle uses
+    are left out.
+    """
+    used = np.zeros(work.n_points, np.uint8)
+    n_cells = kernels.mark_used(work.origin, work.twin, work.n_triangles, used)
+    source = np.arange(work.n_points, dtype=np.int32)
+    source[: len(work.rank)] = work.rank
+    in_order = used.view(np.bool_).take(source)
+    if not in_order.all():
+        source = source[in_order]
+    number = np.full(work.n_points, -1, np.int32)
+    number[source] = np.arange(len(source), dtype=np.int32)
+    cells = np.empty((n_cells, 3), np.int64)
+    regions = np.empty(n_cells, np.int64)
+    kernels.extract(work.origin, work.twin, work.n_triangles, number, cells.reshape(-1), regions)
     work.release()
-    return cells[:n], regions[:n], used
-
-
-def _numbering(work: Workspace, used: np.ndarray) -> np.ndarray:
-    """New numbers of the used vertices: the domain's points in their order, then the others."""
-    n = len(work.order)
-    in_order = np.concatenate([used[work.rank], used[n:]])
-    position = np.cumsum(in_order) - 1
-    number = np.full(work.n_points, -1, np.int64)
-    number[: len(position)][:n] = position[:n][work.order]
-    number[n:] = position[n:]
-    return number
+    return source, number, cells, regions
 
 
 def _facets(work: Workspace, number: np.ndarray) -> dict[str, dict[str, np.ndarray]]:
     """Subsegments as facets, each with its first region on the left."""
     domain, segment = work.domain, work.segment
-    ends = number[work.ends.reshape(-1, 2)]
+    ends = number.take(work.ends.reshape(-1, 2)).astype(np.int64)
     sides = domain.segment_region[segment]
     left, right = sides.T
     turned = (right >= 0) & ((left < 0) | (right < left))
@@ -85,9 +86,9 @@ def _swapped(pairs: np.ndarray, which: np.ndarray) -> np.ndarray:
     return np.where(which[:, None], pairs[:, ::-1], pairs)
 
 
-def _point_markers(work: Workspace, used: np.ndarray, number: np.ndarray) -> np.ndarray:
-    markers = np.full(int(used.sum()), -1, np.int64)
+def _point_markers(work: Workspace, n_points: int, number: np.ndarray) -> np.ndarray:
+    markers = np.full(n_points, -1, np.int64)
     marked = np.flatnonzero(work.domain.point_marker >= 0)
-    vertex = work.rank[marked]
-    markers[number[vertex]] = work.domain.point_marker[marked]
+    vertex = work.rank.take(marked)
+    markers[number.take(vertex)] = work.domain.point_marker[marked]
     return markers

@@ -58,7 +58,7 @@ class Workspace:
         self.order = keys & (MOST_POINTS - 1)
         self.rank = np.empty(n, np.int32)
         self.rank[self.order] = np.arange(n, dtype=np.int32)
-        self.points = flat.reshape(-1, 2)[self.order].reshape(-1)
+        self.points = flat.reshape(-1, 2).take(self.order, axis=0).reshape(-1)
         self.n_points = n
         self.n_triangles = 0
         half_edges = 4 * (2 * n + 8)
@@ -66,7 +66,7 @@ class Workspace:
         self.twin = np.empty(half_edges, np.int32)
         self.sub = np.empty(half_edges, np.int32)
         self.work = np.empty((5, CAVITY), np.int32)
-        self.ends = self.rank[pieces.ends].reshape(-1)
+        self.ends = self.rank.take(pieces.ends).reshape(-1)
         self.recovered = 0
         self.segment, self.interval = pieces.segment, pieces.interval
 
