@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, fields
+from functools import cached_property
 from itertools import pairwise
 from typing import Any, Protocol
 
@@ -151,7 +152,7 @@ class Pslg:
         """Lower and upper corner of the points' box, each (2,)."""
         return self.points.min(axis=0), self.points.max(axis=0)
 
-    @property
+    @cached_property
     def diagonal(self) -> float:
         """Length of the box's diagonal."""
         lo, hi = self.bounds()

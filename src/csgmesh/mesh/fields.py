@@ -15,6 +15,8 @@ from csgmesh.mesh.kinds import KINDS
 
 def frozen(name: str, value: ArrayLike, dtype: type, shape: tuple[int | None, ...]) -> np.ndarray:
     """`value` as a read-only C-contiguous array; None in `shape` stands for any length."""
+    if type(value) is np.ndarray and value.dtype == dtype and _is_frozen(value, shape):
+        return value
     try:
         given = np.asarray(value)
     except ValueError as error:
@@ -36,6 +38,14 @@ def frozen(name: str, value: ArrayLike, dtype: type, shape: tuple[int | None, ..
         array = array.copy() if is_theirs else array
         array.flags.writeable = False
     return array
+
+
+def _is_frozen(array: np.ndarray, shape: tuple[int | None, ...]) -> bool:
+    """Whether nothing has to be done: a mesher's arrays, of which there may be thousands."""
+    flags = array.flags
+    if flags.writeable or not flags.c_contiguous or array.ndim != len(shape):
+        return False
+    return all(want is None or want == have for want, have in zip(shape, array.shape, strict=True))
 
 
 def point_array(value: ArrayLike) -> np.ndarray:

@@ -25,7 +25,7 @@ def assemble(work: Workspace, info: Mapping[str, object]) -> Mesh:
     markers = _point_markers(work, len(source), number)
     points = work.points[: 2 * work.n_points].reshape(-1, 2).take(source, axis=0)
     # A mesh takes over arrays that nobody can write to, and copies others.
-    for array in (points, cells, regions, markers):
+    for array in (points, cells, regions, markers, *facets.values()):
         array.flags.writeable = False
     return Mesh(
         points=points,
@@ -37,7 +37,7 @@ def assemble(work: Workspace, info: Mapping[str, object]) -> Mesh:
         curves=domain.curves,
         domain=domain,
         info={**info, "n_points": len(points), "n_cells": len(cells)},
-        **facets,
+        **{name: {"line": array} for name, array in facets.items()},
     )
 
 
@@ -63,23 +63,26 @@ def _cells(work: Workspace) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndar
     return source, number, cells, regions
 
 
-def _facets(work: Workspace, number: np.ndarray) -> dict[str, dict[str, np.ndarray]]:
+def _facets(work: Workspace, number: np.ndarray) -> dict[str, np.ndarray]:
     """Subsegments as facets, each with its first region on the left."""
     domain, segment = work.domain, work.segment
     ends = number.take(work.ends.reshape(-1, 2)).astype(np.int64)
     sides = domain.segment_region[segment]
-    left, right = sides.T
+    left, right = sides[:, 0], sides[:, 1]
     turned = (right >= 0) & ((left < 0) | (right < left))
     curve = domain.segment_curve[segment]
     interval = work.interval * (curve >= 0)[:, None]
-    kept = (left >= 0) | (right >= 0)
-    return {
-        "facets": {"line": _swapped(ends, turned)[kept]},
-        "facet_marker": {"line": domain.segment_marker[segment][kept]},
-        "facet_region": {"line": _swapped(sides, turned)[kept]},
-        "facet_curve": {"line": curve[kept]},
-        "facet_interval": {"line": _swapped(interval, turned)[kept]},
+    if turned.any():
+        ends, sides, interval = (_swapped(pairs, turned) for pairs in (ends, sides, interval))
+    found = {
+        "facets": ends,
+        "facet_marker": domain.segment_marker[segment],
+        "facet_region": sides,
+        "facet_curve": curve,
+        "facet_interval": interval,
     }
+    kept = (left >= 0) | (right >= 0)
+    return found if kept.all() else {name: array[kept] for name, array in found.items()}
 
 
 def _swapped(pairs: np.ndarray, which: np.ndarray) -> np.ndarray:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -154,7 +154,7 @@ class DelaunayRefinement:
         return {
             "method": "DelaunayRefinement",
             "min_angle": self.min_angle,
-            "options": asdict(self),
+            "options": dict(vars(self)),
             "n_steiner": work.n_points - len(work.domain.points),
             "n_sharp_corners": int((refiner.radius > 0).sum()),
             "n_given_up": int(refiner.count[7]),

@@ -200,9 +200,12 @@ class Workspace:
         at = apex >= 0
         vertex = np.concatenate([ends[at].ravel(), ends[both, 0], ends[both, 1]])
         owner = np.concatenate([np.repeat(apex[at], 2), ends[both, 1], ends[both, 0]])
-        pairs = np.unique(np.column_stack([vertex, owner])[vertex != owner], axis=0)
-        slot = np.arange(len(pairs)) - np.searchsorted(pairs[:, 0], pairs[:, 0])
+        other = vertex != owner
+        key = np.sort(vertex[other] * np.int64(self.n_points) + owner[other])
+        key = key[np.concatenate([[True], key[1:] != key[:-1]])[: len(key)]]
+        vertex, owner = key // self.n_points, key % self.n_points
+        slot = np.arange(len(key)) - np.searchsorted(vertex, vertex)
         out = np.full((self.n_points, 2), -1, np.int32)
         kept = slot < 2
-        out[pairs[kept, 0], slot[kept]] = pairs[kept, 1]
+        out[vertex[kept], slot[kept]] = owner[kept]
         return out.reshape(-1)
