@@ -60,18 +60,29 @@ _HOME = {
     "csgmesh.mesh": ("Mesh",),
     "csgmesh.meshers": ("ConstrainedDelaunay", "DelaunayRefinement"),
     "csgmesh.pipeline": ("check", "generate"),
-    "csgmesh.size": ("SizeField", "UniformSize"),
+    "csgmesh.size": (
+        "BackgroundSize",
+        "CurvatureSize",
+        "FeatureSize",
+        "NearSize",
+        "RegionSize",
+        "SizeField",
+        "UniformSize",
+        "minimum",
+    ),
     "csgmesh.viz": ("draw",),
 }
 
 _MODULE_OF = {name: module for module, names in _HOME.items() for name in names}
 
 __all__ = [
+    "BackgroundSize",
     "Box",
     "BudgetError",
     "Certificate",
     "ConstrainedDelaunay",
     "CsgmeshError",
+    "CurvatureSize",
     "DelaunayRefinement",
     "Disk",
     "DomainFile",
@@ -82,17 +93,20 @@ __all__ = [
     "EmbeddedPoints",
     "EmptyDomainError",
     "EvaluationError",
+    "FeatureSize",
     "FileFormatError",
     "HalfSpace",
     "InputError",
     "Mesh",
     "MeshingError",
     "NameLookupError",
+    "NearSize",
     "Outline",
     "Polygon",
     "Primitive",
     "Pslg",
     "Quality",
+    "RegionSize",
     "Regions",
     "RegularPolygon",
     "Shape",
@@ -110,6 +124,7 @@ __all__ = [
     "generate",
     "intersection",
     "load",
+    "minimum",
     "quality",
     "read",
     "smooth",
@@ -165,7 +180,16 @@ if TYPE_CHECKING:
     from csgmesh.mesh import Mesh
     from csgmesh.meshers import ConstrainedDelaunay, DelaunayRefinement
     from csgmesh.pipeline import check, generate
-    from csgmesh.size import SizeField, UniformSize
+    from csgmesh.size import (
+        BackgroundSize,
+        CurvatureSize,
+        FeatureSize,
+        NearSize,
+        RegionSize,
+        SizeField,
+        UniformSize,
+        minimum,
+    )
     from csgmesh.viz import draw
 
 

@@ -48,8 +48,8 @@ def test_unknown_keys_suggest_both_kinds(plate: Pslg) -> None:
 
 def test_fields_and_callables_pass_through(plate: Pslg) -> None:
     class Ramp(SizeField):
-        def __call__(self, points: np.ndarray) -> np.ndarray:
-            return 0.1 + points[:, 0]
+        def bind(self, domain: Pslg):
+            return lambda points: 0.1 + points[:, 0]
 
     source = resolve({"rock": Ramp()}, plate).region[0][1]
     assert evaluate(source, np.array([[1.0, 0.0]])).tolist() == [1.1]

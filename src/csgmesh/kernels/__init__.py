@@ -37,6 +37,8 @@ _HOME = {
     "pair_half_edges": "improvement",
     "smooth_vertices": "improvement",
     "treat_triangles": "improvement",
+    "lowest_sources": "sizes.sources",
+    "limit_growth": "sizes.gradation",
 }
 
 

@@ -3,19 +3,60 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from collections.abc import Callable
 from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from csgmesh.errors import SizeError
 
+if TYPE_CHECKING:
+    from csgmesh.domain.pslg import Pslg
+
+#: Wanted edge lengths (n,) at points (n, dim).
+Source = Callable[[np.ndarray], np.ndarray]
+
 
 class SizeField(ABC):
-    """The wanted edge length at points. Subclasses define `__call__`."""
+    """The wanted edge length as a function of place, perhaps of the domain.
+
+    A field is a value: it says what is wanted, and `bind` makes it a function of points once the
+    domain is known, with its names, regions and curves. Fields combine, with one another, with
+    numbers and with callables: ``cm.minimum(a, b)``, ``a * 2``, ``a / 2``, ``a * b``,
+    ``a.clamp(lo, hi)``.
+
+    Examples
+    --------
+    >>> import csgmesh as cm
+    >>> wanted = cm.minimum(cm.NearSize("hole", 0.02), 0.2) * 2
+    >>> plate = cm.Box((0, 0), (4, 2)) - cm.Disk((2, 1), 0.5, name="hole")
+    >>> h = wanted.bind(cm.evaluate(plate))
+    >>> h(np.array([[2.5, 1.0], [0.0, 0.0]])).round(6)
+    array([0.04, 0.4 ])
+    """
 
     @abstractmethod
-    def __call__(self, points: np.ndarray) -> np.ndarray:
-        """Wanted edge length at each of `points` (n, dim), as (n,)."""
+    def bind(self, domain: Pslg) -> Source:
+        """The field on a domain: wanted edge lengths (n,) as a function of points (n, dim)."""
+
+    def __mul__(self, other: Any) -> SizeField:
+        from csgmesh.size.combinations import ProductSize
+
+        return ProductSize(self, other)
+
+    __rmul__ = __mul__
+
+    def __truediv__(self, number: float) -> SizeField:
+        from csgmesh.size.combinations import ProductSize
+
+        return ProductSize(self, 1.0 / positive(number, "divisor of a size"))
+
+    def clamp(self, lo: float | None = None, hi: float | None = None) -> SizeField:
+        """The field, but nowhere below `lo` and nowhere above `hi`."""
+        from csgmesh.size.combinations import ClampedSize
+
+        return ClampedSize(self, lo, hi)
 
 
 @dataclass(frozen=True)
@@ -44,7 +85,12 @@ class UniformSize(SizeField):
         object.__setattr__(self, "value", positive(self.value, "size"))
 
     def __call__(self, points: np.ndarray) -> np.ndarray:
+        """Wanted edge length at each of `points` (n, dim), as (n,)."""
         return np.full(len(points), self.value)
+
+    def bind(self, domain: Pslg) -> Source:
+        """Itself: it is the same on every domain."""
+        return self
 
 
 def positive(value: object, what: str) -> float:

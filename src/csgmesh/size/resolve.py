@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -11,9 +11,7 @@ import numpy as np
 from csgmesh.domain.names import find_names
 from csgmesh.domain.pslg import Pslg
 from csgmesh.errors import InputError, SizeError
-from csgmesh.size.field import SizeField, UniformSize, positive
-
-Source = Callable[[np.ndarray], np.ndarray]
+from csgmesh.size.field import SizeField, Source, UniformSize, positive
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,17 +72,17 @@ def resolve(size: Any, domain: Pslg) -> ResolvedSize | None:
     if size is None:
         return None
     if not isinstance(size, Mapping):
-        return ResolvedSize(_source(size, "size"))
+        return ResolvedSize(_source(size, "size", domain))
     default: Source | None = None
     boundary, region = [], []
     for name, value in size.items():
         if not isinstance(name, str):
             raise InputError(f"keys of a size are names of boundaries or regions; got {name!r}")
-        source = _source(value, f"size of {name!r}")
+        source = _source(value, f"size of {name!r}", domain)
         if name == "default":
             default = source
             continue
-        markers, regions = _meaning(name, domain)
+        markers, regions = meaning(name, domain)
         if len(markers):
             boundary.append((markers, source))
         if len(regions):
@@ -118,9 +116,46 @@ def evaluate(source: Source, points: np.ndarray) -> np.ndarray:
     return value
 
 
-def _source(value: Any, what: str) -> Source:
+def pointwise(size: Any, domain: Pslg) -> Source:
+    """A `size=` argument as a function of points alone, for meshers without a triangulation.
+
+    Names mean what is said at points in their regions, and on their boundaries, growing away from
+    both by 0.3 per unit of length; see `csgmesh.size.limit_gradation` for any other bound.
+
+    Parameters
+    ----------
+    size : None, float, mapping, callable or SizeField
+        Wanted edge length; None stands for the domain's diagonal.
+    domain : Pslg
+
+    Returns
+    -------
+    callable
+        ``h(points (n, 2)) -> (n,)``; raises a `SizeError` where it would not be positive.
+
+    Raises
+    ------
+    SizeError, NameLookupError
+        As of `resolve`.
+
+    Examples
+    --------
+    >>> square = Pslg([[0, 0], [1, 0], [1, 1], [0, 1]], [[0, 1], [1, 2], [2, 3], [3, 0]])
+    >>> h = pointwise({"boundary": 0.1, "default": 0.3}, square)
+    >>> h(np.array([[0.5, 0.0], [0.5, 0.5]]))
+    array([0.1 , 0.25])
+    """
+    from csgmesh.size.combinations import as_field
+
+    if size is None:
+        return UniformSize(domain.diagonal)
+    source = as_field(size, "size").bind(domain)
+    return lambda points: evaluate(source, points)
+
+
+def _source(value: Any, what: str, domain: Pslg) -> Source:
     if isinstance(value, SizeField):
-        return value
+        return value.bind(domain)
     if callable(value):
         return value
     if isinstance(value, (str, bytes)) or value is None:
@@ -128,7 +163,7 @@ def _source(value: Any, what: str) -> Source:
     return UniformSize(positive(value, what))
 
 
-def _meaning(name: str, domain: Pslg) -> tuple[np.ndarray, np.ndarray]:
+def meaning(name: str, domain: Pslg) -> tuple[np.ndarray, np.ndarray]:
     """Markers and regions that a name, prefix or glob means."""
     boundaries = [n for names in domain.boundary_names for n in names]
     wanted = set(find_names(name, [*boundaries, *domain.region_names], what="boundary or region"))

@@ -1,0 +1,1 @@
+"""Kernels of size fields: graded sources, and the gradation on any graph."""
