@@ -58,7 +58,7 @@ _HOME = {
     "csgmesh.io": ("from_meshio", "read", "to_meshio", "to_skfem", "write"),
     "csgmesh.measures": ("Certificate", "Quality", "quality"),
     "csgmesh.mesh": ("Mesh",),
-    "csgmesh.meshers": ("ConstrainedDelaunay", "DelaunayRefinement"),
+    "csgmesh.meshers": ("ConstrainedDelaunay", "DelaunayRefinement", "Structured"),
     "csgmesh.pipeline": ("check", "generate"),
     "csgmesh.size": (
         "BackgroundSize",
@@ -113,6 +113,7 @@ __all__ = [
     "ShapeError",
     "SizeError",
     "SizeField",
+    "Structured",
     "Triangle",
     "UnboundedDomainError",
     "UniformSize",
@@ -178,7 +179,7 @@ if TYPE_CHECKING:
     from csgmesh.measures.certificate import Certificate
     from csgmesh.measures.quality import Quality, quality
     from csgmesh.mesh import Mesh
-    from csgmesh.meshers import ConstrainedDelaunay, DelaunayRefinement
+    from csgmesh.meshers import ConstrainedDelaunay, DelaunayRefinement, Structured
     from csgmesh.pipeline import check, generate
     from csgmesh.size import (
         BackgroundSize,

@@ -94,6 +94,13 @@ def test_poisson(run):
     check_picture(folder / "poisson.png")
 
 
+def test_structured(run):
+    printed, folder = run("structured")
+    assert "domain.5" in printed
+    assert float(re.search(r"off by (\S+) at", printed).group(1)) < 1e-3
+    check_picture(folder / "structured.png")
+
+
 @pytest.mark.parametrize("path", sorted(EXAMPLES.glob("*.yaml")), ids=lambda path: path.stem)
 def test_domain_files(path):
     file = cm.load(path)

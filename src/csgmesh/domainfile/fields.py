@@ -7,7 +7,7 @@ where in the text; `ValidationContext` carries the parameters to them.
 from __future__ import annotations
 
 import ast
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Annotated, Any
 
@@ -127,6 +127,39 @@ def _lists_with_words(value: Any, info: ValidationInfo) -> Any:
     return _nested(value, info, (), True)
 
 
+def _texts(value: Any) -> list[str]:
+    if not isinstance(value, list):
+        raise complaint(f"expected a list of names, not {described(value)}")
+    return [_text(item) for item in value]
+
+
+def _by_name(value: Any, info: ValidationInfo, check: Callable[[Any, ValidationInfo], Any]) -> Any:
+    """A mapping of names, each value checked on its own."""
+    if not isinstance(value, dict):
+        raise complaint(f"expected a mapping of names, not {described(value)}")
+    out = {}
+    for name, item in value.items():
+        try:
+            out[name] = check(item, info)
+        except PydanticCustomError as error:
+            details = error.context or {}
+            path = (name, *details["path"])
+            raise complaint(details["message"], path=path, offset=details["offset"]) from None
+    return out
+
+
+def _counts_by_name(value: Any, info: ValidationInfo) -> Any:
+    return _by_name(value, info, _whole)
+
+
+def _words_by_name(value: Any, info: ValidationInfo) -> Any:
+    return _by_name(value, info, _word_or_list)
+
+
+def _word_or_list(value: Any, info: ValidationInfo) -> Any:
+    return _text(value) if isinstance(value, str) else _lists_with_words(value, info)
+
+
 def _condition(value: Any, info: ValidationInfo) -> Condition:
     context = _context(info)
     try:
@@ -199,6 +232,26 @@ Lists = Annotated[list, PlainValidator(_lists), WithJsonSchema(_LIST_SCHEMA)]
 ListsWithWords = Annotated[
     list, PlainValidator(_lists_with_words), WithJsonSchema({"type": "array"})
 ]
+Texts = Annotated[
+    list,
+    PlainValidator(_texts),
+    WithJsonSchema({"type": "array", "items": {"type": "string"}}),
+]
+CountsByName = Annotated[
+    dict,
+    PlainValidator(_counts_by_name),
+    WithJsonSchema({"type": "object", "additionalProperties": _NUMBER_SCHEMA}),
+]
+WordsByName = Annotated[
+    dict,
+    PlainValidator(_words_by_name),
+    WithJsonSchema(
+        {
+            "type": "object",
+            "additionalProperties": {"anyOf": [{"type": "string"}, {"type": "array"}]},
+        }
+    ),
+]
 Values = Annotated[
     Any,
     PlainValidator(_values),
@@ -244,7 +297,15 @@ def _choice(choices: tuple[Any, ...]) -> Any:
     return Annotated[Any, PlainValidator(check), WithJsonSchema({"enum": list(choices)})]
 
 
-_BY_ANNOTATION = {"float": Number, "int": Whole, "bool": Flag, "str": Text}
+_BY_ANNOTATION = {
+    "float": Number,
+    "int": Whole,
+    "bool": Flag,
+    "str": Text,
+    "Sequence[str]": Texts,
+    "Mapping[str, int]": CountsByName,
+    "Mapping[str, Any]": WordsByName,
+}
 
 
 def field_type(annotation: str) -> Any:

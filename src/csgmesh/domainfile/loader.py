@@ -156,6 +156,9 @@ class DomainFile:
             text = size.expression.text if isinstance(size, ExpressionSize) else name
             if name and (repr(name) in message or repr(text) in message):
                 return self.document.error(message, ("mesh", "size", name), key=True)
+        inside = self._option_named_in(message)
+        if inside is not None:
+            return self.document.error(message, inside, key=True)
         option = re.match(r"(deviation|snap|size)\b", message)
         if option is not None:
             return self.document.error(message, ("mesh", option.group()), key=True)
@@ -164,6 +167,21 @@ class DomainFile:
                 if self.document.has(("shapes", name)):
                     return self.document.error(message, ("shapes", name), key=True)
         return self.document.error(message, self._domain_path, key=True)
+
+    def _option_named_in(self, message: str) -> KeyPath | None:
+        """Place of the mesher's option, or of the name within it, that a message is about."""
+        given = self.document.data.get("mesh") or {}
+        key = next((str(key) for key in given if key in mesher_classes()), "")
+        options = given[key] if isinstance(given.get(key), dict) else {}
+        first = sorted(options.items(), key=lambda item: not message.startswith(item[0]))
+        for option, value in first:
+            names = value if isinstance(value, dict) else {}
+            for name in names:
+                if repr(name) in message and not message.startswith("size"):
+                    return ("mesh", key, option, name)
+            if re.match(rf"{option}\b", message):
+                return ("mesh", key, option)
+        return None
 
     @property
     def _domain_path(self) -> KeyPath:

@@ -9,7 +9,6 @@ from __future__ import annotations
 import importlib
 import sys
 import warnings
-from functools import lru_cache
 from types import ModuleType
 from typing import Any
 
@@ -35,6 +34,8 @@ _HOME = {
     "Arrays": "improvement",
     "measure": "improvement",
     "pair_half_edges": "improvement",
+    "connect_block": "grids.blocks",
+    "fill_block": "grids.blocks",
     "smooth_vertices": "improvement",
     "treat_triangles": "improvement",
     "lowest_sources": "sizes.sources",
@@ -46,9 +47,11 @@ def _load(name: str) -> ModuleType:
     """Import a kernel module, each of its callees first, into the directory of its own sources."""
     if f"{__name__}.{name}" in sys.modules:
         return sys.modules[f"{__name__}.{name}"]
+    import numba
+
     for callee in callees(name):
         _load(callee)
-    settings: Any = _numba().config
+    settings: Any = numba.config
     kept = settings.CACHE_DIR
     try:
         directory = cache_directory(name)
@@ -66,29 +69,6 @@ def _load(name: str) -> ModuleType:
         return importlib.import_module(f".{name}", __name__)
     finally:
         settings.CACHE_DIR = kept
-
-
-@lru_cache
-def _numba() -> ModuleType:
-    """numba, imported without scipy.linalg, which no kernel needs and which takes 0.1 s.
-
-    As numba is imported it asks whether scipy has a BLAS. It asks again whenever it compiles
-    something that calls one, so that the answer may wait.
-    """
-    import numba
-
-    try:
-        linalg: Any = importlib.import_module("numba.np.linalg")
-        ask = linalg.ensure_blas
-        linalg.ensure_blas = lambda: None
-        try:
-            arraymath: Any = importlib.import_module("numba.np.arraymath")
-            arraymath.ensure_blas = ask
-        finally:
-            linalg.ensure_blas = ask
-    except (ImportError, AttributeError):  # Another version of numba, which asks elsewhere.
-        pass
-    return numba
 
 
 def __getattr__(name: str) -> Any:

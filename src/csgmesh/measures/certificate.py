@@ -31,6 +31,7 @@ from csgmesh.measures.rules.names import (
     check_names,
     check_sides,
 )
+from csgmesh.measures.rules.structure import check_blocks
 from csgmesh.mesh import Mesh
 
 __all__ = ["Certificate", "Check", "Failure", "check"]
@@ -56,6 +57,7 @@ RULES: tuple[tuple[str, Callable[[Case], Check]], ...] = (
     ("area", check_area),
     ("smallest angle", check_angles),
     ("Delaunay", check_delaunay),
+    ("blocks", check_blocks),
     ("samples", check_samples),
 )
 

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from csgmesh.errors import InputError
+from csgmesh.mesh.blocks import Block, frozen_blocks
 from csgmesh.mesh.fields import by_kind, connectivity, frozen, names_of_markers, point_array
 
 if TYPE_CHECKING:
@@ -59,6 +60,8 @@ class Mesh:
         What was meshed; None for a mesh read from a file.
     info : mapping, optional
         Facts from the mesher: its name, the angle asked for, how many points it inserted.
+    blocks : mapping of str to Block, optional
+        The blocks of a structured grid, with cells and points numbered by i and j.
 
     Raises
     ------
@@ -86,6 +89,7 @@ class Mesh:
     curves: Curves | None = None
     domain: Pslg | None = None
     info: Mapping[str, object] = field(default_factory=dict)
+    blocks: Mapping[str, Block] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         points = point_array(self.points)
@@ -108,6 +112,7 @@ class Mesh:
             "facet_interval": by_kind("facet_interval", self.facet_interval, facets, (2,), 0.0),
             "point_marker": frozen("point_marker", marker, np.int64, (len(points),)),
             "info": MappingProxyType(dict(self.info)),
+            "blocks": frozen_blocks(self.blocks),
         }
         for name, value in new.items():
             object.__setattr__(self, name, value)
@@ -316,7 +321,7 @@ class Mesh:
         return self.locator.interpolate(values, points)
 
     def equals(self, other: Mesh) -> bool:
-        """Whether all arrays and names are the same, to the last bit (`info` is not compared).
+        """Whether all arrays and names are the same, to the last bit, but for `info` and `blocks`.
 
         Examples
         --------
@@ -327,7 +332,7 @@ class Mesh:
         """
         if not isinstance(other, Mesh):
             return False
-        compared = (f.name for f in fields(self) if f.name not in ("curves", "domain", "info"))
+        compared = (f.name for f in fields(self) if f.name not in _NOT_COMPARED)
         if not all(_same(getattr(self, n), getattr(other, n)) for n in compared):
             return False
         if self.curves is None or other.curves is None:
@@ -356,6 +361,9 @@ class Mesh:
                 f"locate and interpolate need a plane mesh; this one has dim {self.dim}"
             )
         return Locator.of(self.points, self.cells)
+
+
+_NOT_COMPARED = ("curves", "domain", "info", "blocks")
 
 
 def _same(a: Any, b: Any) -> bool:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -63,7 +63,7 @@ def _cells(work: Workspace) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndar
     return source, number, cells, regions
 
 
-def _facets(work: Workspace, number: np.ndarray) -> dict[str, np.ndarray]:
+def _facets(work: Workspace, number: np.ndarray) -> dict[str, Any]:
     """Subsegments as facets, each with its first region on the left."""
     domain, segment = work.domain, work.segment
     ends = number.take(work.ends.reshape(-1, 2)).astype(np.int64)
