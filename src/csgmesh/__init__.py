@@ -54,7 +54,7 @@ _HOME = {
         "SizeError",
         "UnboundedDomainError",
     ),
-    "csgmesh.improve": ("smooth",),
+    "csgmesh.improve": ("refine", "smooth"),
     "csgmesh.io": ("from_meshio", "read", "to_meshio", "to_skfem", "write"),
     "csgmesh.measures": ("Certificate", "Quality", "quality"),
     "csgmesh.mesh": ("Mesh",),
@@ -128,6 +128,7 @@ __all__ = [
     "minimum",
     "quality",
     "read",
+    "refine",
     "smooth",
     "symmetric_difference",
     "to_meshio",
@@ -174,7 +175,7 @@ if TYPE_CHECKING:
         SizeError,
         UnboundedDomainError,
     )
-    from csgmesh.improve import smooth
+    from csgmesh.improve import refine, smooth
     from csgmesh.io import from_meshio, read, to_meshio, to_skfem, write
     from csgmesh.measures.certificate import Certificate
     from csgmesh.measures.quality import Quality, quality

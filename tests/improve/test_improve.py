@@ -197,4 +197,4 @@ def test_what_cannot_be_done_is_refused() -> None:
         cm.DelaunayRefinement(improve="yes")
     quads = Mesh([[0, 0], [1, 0], [1, 1], [0, 1]], {"quad": [[0, 1, 2, 3]]})
     with pytest.raises(InputError, match="quad"):
-        cm.smooth(quads)
+        optimise(quads)

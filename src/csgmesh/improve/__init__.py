@@ -1,6 +1,7 @@
-"""From a mesh to a better one with the same boundary: worst angles raised, or smoothed."""
+"""From a mesh to a better or a finer one with the same boundary."""
 
 from csgmesh.improve.optimisation import optimise
+from csgmesh.improve.refinement import refine
 from csgmesh.improve.smoothing import smooth
 
-__all__ = ["optimise", "smooth"]
+__all__ = ["optimise", "refine", "smooth"]

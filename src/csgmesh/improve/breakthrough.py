@@ -5,11 +5,12 @@ from __future__ import annotations
 import numpy as np
 
 from csgmesh import kernels
+from csgmesh.improve.stars import Stars
 from csgmesh.improve.workpiece import Workpiece
 from csgmesh.spatial import Boxes
 
 
-def broken_through(work: Workpiece) -> np.ndarray:
+def broken_through(work: Workpiece | Stars) -> np.ndarray:
     """Vertices that slid such that their facets, or what they swept over, meet other facets.
 
     Only the outside needs a look: inside the domain triangles lie between a facet and the next, and

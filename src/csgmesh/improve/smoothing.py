@@ -7,6 +7,7 @@ import numpy as np
 from csgmesh.errors import InputError
 from csgmesh.improve.breakthrough import broken_through
 from csgmesh.improve.optimisation import optimise
+from csgmesh.improve.stars import BEST, CENTROIDS, NEIGHBOURS, Stars
 from csgmesh.improve.workpiece import Progress, Workpiece
 from csgmesh.mesh import Mesh
 from csgmesh.options import near
@@ -17,23 +18,26 @@ METHODS = ("laplace", "odt", "optimize")
 def smooth(
     mesh: Mesh, method: str = "odt", *, sweeps: int = 5, progress: Progress | None = None
 ) -> Mesh:
-    """Move the vertices of a mesh of triangles to better places.
+    """Move the vertices of a plane mesh to better places.
 
-    A vertex moves only if no triangle around it turns over and the smallest angle around it does
-    not sink; so the mesh's smallest angle never sinks. Vertices of the boundary slide along their
-    exact curve; corners, junctions and embedded points stay, and so do vertices on facets without
-    an exact curve.
+    A vertex moves only if no cell around it turns over and the worst cell around it does not get
+    worse; so the mesh's worst cell never does. Among triangles alone that is the one with the
+    smallest angle; where there are quads, the one with the smallest scaled Jacobian: the sine of
+    the angle at a quad's sharpest or bluntest corner, or of a triangle's smallest angle over that
+    of 60 degrees. Vertices of the boundary slide along their exact curve; corners, junctions and
+    embedded points stay, and so do vertices on facets without an exact curve.
 
     Parameters
     ----------
     mesh : Mesh
-        Plane, of triangles.
+        Of triangles, quads or both.
     method : {"odt", "laplace", "optimize"}
         To the centre that minimises the interpolation error (optimal Delaunay triangulation: Chen
-        and Xu 2004); to the mean of the neighbours; or raise the smallest angles, which also turns
-        edges: see `csgmesh.improve.optimise`.
+        and Xu 2004), with quads to the mean of the cells' centroids; to the mean of the neighbours;
+        or raise the smallest angles, which also turns edges of a mesh of triangles: see
+        `csgmesh.improve.optimise`.
     sweeps : int, default 5
-        How often to go through all vertices; "optimize" decides for itself.
+        How often to go through all vertices; with triangles alone "optimize" decides for itself.
     progress : callable, optional
         Called as ``progress(stage, done, total)``.
 
@@ -45,7 +49,7 @@ def smooth(
     Raises
     ------
     InputError
-        If the method is unknown or the mesh holds anything but triangles.
+        If the method is unknown, or the mesh holds anything but straight triangles and quads.
 
     Examples
     --------
@@ -58,6 +62,8 @@ def smooth(
         raise InputError(f"smooth has no method {method!r}; {near(str(method), METHODS)}")
     if sweeps < 0:
         raise InputError(f"sweeps must not be negative; got {sweeps!r}")
+    if set(mesh.cells) - {"triangle"}:
+        return _smooth_with_quads(mesh, method, sweeps, progress)
     if method == "optimize":
         return optimise(mesh, progress=progress)
     pinned = np.zeros(0, np.int64)
@@ -69,4 +75,20 @@ def smooth(
         found = broken_through(work)
         if not len(found):
             return work.finished()
+        pinned = np.concatenate([pinned, found])
+
+
+def _smooth_with_quads(mesh: Mesh, method: str, sweeps: int, progress: Progress | None) -> Mesh:
+    target = {"laplace": NEIGHBOURS, "odt": CENTROIDS, "optimize": BEST}[method]
+    pinned = np.zeros(0, np.int64)
+    while True:
+        stars = Stars(mesh, pinned)
+        for sweep in range(sweeps):
+            if progress is not None:
+                progress("smooth", sweep, sweeps)
+            if not stars.move(target):
+                break
+        found = broken_through(stars)
+        if not len(found):
+            return stars.finished()
         pinned = np.concatenate([pinned, found])

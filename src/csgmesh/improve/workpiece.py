@@ -9,12 +9,10 @@ import numpy as np
 
 from csgmesh import kernels
 from csgmesh.errors import InputError
+from csgmesh.improve.boundary_vertices import FIXED, FREE, SLIDING, classify_boundary
 from csgmesh.mesh import Mesh
 
 Progress = Callable[[str, int, int], None]
-
-# Kinds of vertices, as the kernels number them.
-FREE, SLIDING, FIXED = 0, 1, 2
 
 #: Edges stay between these shares of the wanted length, or what they are if that is worse: a
 #: little within the [0.6, 1.6] that is promised for nearly all edges.
@@ -58,7 +56,7 @@ class Workpiece:
         around = np.full((n, 2), -1, np.int32)
         kind = np.full(n, FREE, np.int8)
         if len(facets):
-            _classify_boundary(mesh, facets, kind, around)
+            classify_boundary(mesh, facets, kind, around)
         _fix_bare_edges(origin, twin, line, region, kind)
         kind[pinned] = FIXED
         deviation = mesh.domain.deviation if mesh.domain is not None else 0.0
@@ -145,30 +143,6 @@ def check_triangles(mesh: Mesh) -> None:
             f"only plane meshes of triangles can be improved; this one has dim {mesh.dim} "
             f"and holds {held}"
         )
-
-
-def _classify_boundary(
-    mesh: Mesh, facets: np.ndarray, kind: np.ndarray, around: np.ndarray
-) -> None:
-    """Fix what is on facets, but for vertices between two facets of one curve and one marker."""
-    n = mesh.n_points
-    n_facets = np.bincount(facets.ravel(), minlength=n)
-    kind[n_facets > 0] = FIXED
-    is_probe = mesh.point_marker >= 0
-    kind[is_probe] = FIXED
-    number = np.arange(len(facets), dtype=np.int32)
-    around[facets[:, 1], 0] = number
-    around[facets[:, 0], 1] = number
-    if mesh.curves is None:
-        return
-    at = np.flatnonzero((n_facets == 2) & (around >= 0).all(axis=1) & ~is_probe)
-    f, g = around[at].T
-    curve, t = mesh.facet_curve["line"], mesh.facet_interval["line"]
-    sides, marker = mesh.facet_region["line"], mesh.facet_marker["line"]
-    same = (curve[f] == curve[g]) & (curve[f] >= 0) & (marker[f] == marker[g])
-    same &= (sides[f] == sides[g]).all(axis=1) & (t[f, 1] == t[g, 0])
-    same &= (t[f, 1] - t[f, 0]) * (t[g, 1] - t[g, 0]) > 0
-    kind[at[same]] = SLIDING
 
 
 def _fix_bare_edges(

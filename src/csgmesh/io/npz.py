@@ -21,6 +21,8 @@ from csgmesh.mesh import Mesh
 
 _VERSION = 1
 _CELLS = ("cells", "cell_region")
+#: What only refined meshes have.
+_LINEAGE = ("cell_parent", "cell_green")
 _FACETS = ("facets", "facet_marker", "facet_region", "facet_curve", "facet_interval")
 _CURVES = ("kind", "data", "interval")
 
@@ -43,6 +45,10 @@ def write(path: Path, mesh: Mesh, *, compress: bool = False) -> None:
     arrays["point_marker"] = mesh.point_marker
     for name in (*_CELLS, *_FACETS):
         arrays.update({f"{name}.{k}": array for k, array in getattr(mesh, name).items()})
+    for name in _LINEAGE:
+        by_kind = getattr(mesh, name)
+        if any((array >= 0).any() for array in by_kind.values()):
+            arrays.update({f"{name}.{k}": array for k, array in by_kind.items()})
     if mesh.curves is not None:
         arrays.update({f"curves.{name}": getattr(mesh.curves, name) for name in _CURVES})
     method = zipfile.ZIP_DEFLATED if compress else zipfile.ZIP_STORED
@@ -63,6 +69,9 @@ def read(path: Path) -> Mesh:
     for group, kinds in ((_CELLS, header["cell_kinds"]), (_FACETS, header["facet_kinds"])):
         for name in group:
             fields[name] = {kind: _needed(path, arrays, f"{name}.{kind}") for kind in kinds}
+    for name in _LINEAGE:
+        known = {kind: arrays.get(f"{name}.{kind}") for kind in header["cell_kinds"]}
+        fields[name] = {kind: array for kind, array in known.items() if array is not None}
     curves = None
     if "curves.kind" in arrays:
         curves = Curves(*(_needed(path, arrays, f"curves.{name}") for name in _CURVES))

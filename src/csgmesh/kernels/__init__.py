@@ -40,6 +40,16 @@ _HOME = {
     "treat_triangles": "improvement",
     "lowest_sources": "sizes.sources",
     "limit_growth": "sizes.gradation",
+    "number_edges": "refine_cells.edges",
+    "cells_of_edges": "refine_cells.edges",
+    "spread_marks": "refine_cells.edges",
+    "write_children": "refine_cells.children",
+    "halve": "refine_cells.children",
+    "corner_sines": "refine_cells.sines",
+    "Cells": "star_smoothing.moves",
+    "cell_qualities": "star_smoothing.moves",
+    "gather_stars": "star_smoothing.moves",
+    "move_vertices": "star_smoothing.moves",
 }
 
 

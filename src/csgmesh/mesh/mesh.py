@@ -58,6 +58,12 @@ class Mesh:
         The exact curves; None for a mesh read from a file.
     domain : Pslg, optional
         What was meshed; None for a mesh read from a file.
+    cell_parent : mapping of str to array_like (m,), optional
+        For a refined mesh the cell of the coarser one that each cell is a part of, counted through
+        all kinds; -1 for none.
+    cell_green : mapping of str to array_like (m,), optional
+        Cells with the same number are a green closure, undone before the next refinement; -1 for
+        all others.
     info : mapping, optional
         Facts from the mesher: its name, the angle asked for, how many points it inserted.
     blocks : mapping of str to Block, optional
@@ -90,6 +96,8 @@ class Mesh:
     domain: Pslg | None = None
     info: Mapping[str, object] = field(default_factory=dict)
     blocks: Mapping[str, Block] = field(default_factory=dict)
+    cell_parent: Arrays = field(default_factory=dict)
+    cell_green: Arrays = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         points = point_array(self.points)
@@ -103,6 +111,8 @@ class Mesh:
             "points": points,
             "cells": cells,
             "cell_region": by_kind("cell_region", self.cell_region, cells, (), 0),
+            "cell_parent": by_kind("cell_parent", self.cell_parent, cells, (), -1),
+            "cell_green": by_kind("cell_green", self.cell_green, cells, (), -1),
             "region_names": tuple(str(name) for name in self.region_names),
             "facets": facets,
             "facet_marker": by_kind("facet_marker", self.facet_marker, facets, (), -1),

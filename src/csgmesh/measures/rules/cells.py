@@ -47,7 +47,7 @@ def check_angles(case: Case) -> Check:
         told = "1 cell is" if len(low) == 1 else f"{len(low):,} cells are"
         reason = f"{told} below {bound:g}°; without a domain no input angle can excuse them"
         return Check.skipped(rule, reason)
-    excused = _excused(case, low)
+    excused = excused_cells(case, low)
     bad = low[~excused]
     detail = f"{smallest[bad[0]]:.4g}°" if len(bad) else ""
     complaint = f"has|have an angle below {bound:g}°"
@@ -59,7 +59,7 @@ def check_angles(case: Case) -> Check:
     return Check.of(rule, len(smallest), failures, note)
 
 
-def _excused(case: Case, cells: np.ndarray) -> np.ndarray:
+def excused_cells(case: Case, cells: np.ndarray) -> np.ndarray:
     """Which cells touch the apex of an input angle below 60 degrees or lie in its shell."""
     out = np.zeros(len(cells), bool)
     if case.domain is None or not len(cells):

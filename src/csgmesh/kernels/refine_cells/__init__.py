@@ -1,0 +1,1 @@
+"""Kernels that divide cells: edges numbered, marks spread, children written."""

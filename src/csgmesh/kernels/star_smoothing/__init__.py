@@ -1,0 +1,1 @@
+"""Kernels that move vertices of triangles and quads to better places of their stars."""
