@@ -88,6 +88,11 @@ def generate(
     domain = evaluate(shape, deviation=deviation, snap=snap)
     if progress is not None:
         progress("evaluate", 1, 1)
+    if domain.dim != 2:
+        raise InputError(
+            f"{type(mesher).__name__} meshes domains in the plane; got a solid, which csgmesh can "
+            "evaluate but not mesh yet"
+        )
     return mesher.generate(domain, size, progress)
 
 

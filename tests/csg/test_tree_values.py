@@ -51,9 +51,9 @@ def test_repr_reads_like_the_input() -> None:
 def test_repr_evaluates_back_at_a_hundred_levels(wide: bool) -> None:
     s: cm.Shape = cm.Disk((0, 0), 1)
     others = [cm.Box((k, 0), (k + 1, 1)) for k in range(9 if wide else 1)]
-    while s.height < 100:
-        s = cm.union(s, *others) if s.height % 2 else cm.intersection(s, *others)
-    assert s.height == 100
+    while s.depth < 100:
+        s = cm.union(s, *others) if s.depth % 2 else cm.intersection(s, *others)
+    assert s.depth == 100
     assert eval(repr(s), {name: getattr(cm, name) for name in cm.__all__}) == s
 
 
@@ -70,7 +70,7 @@ def test_ten_thousand_terms() -> None:
     for k in range(1, 10_000):
         s = s | cm.Disk((k, 0), 1)
         earlier.append(s)
-    assert s.height == 2
+    assert s.depth == 2
     assert len(s.children) == 10_000
     assert len(earlier[4].children) == 6
     assert s == cm.union(cm.Disk((k, 0), 1) for k in range(10_000))
@@ -82,7 +82,7 @@ def test_ten_thousand_levels() -> None:
     s: cm.Shape = cm.Disk((0, 0), 0.4)
     for k in range(1, 5_000):
         s = (s | cm.Disk((k, 0), 0.4)) - cm.Disk((k, 0), 0.2, name="x")
-    assert s.height == 9_999
+    assert s.depth == 9_999
     assert pickle.loads(pickle.dumps(s)) == s
     assert cm.Shape.from_dict(s.to_dict()) == s
     assert repr(s) == "<difference of 2, 9,999 leaves, 9,999 levels>"

@@ -7,13 +7,14 @@ import reprlib
 from numbers import Real
 from typing import Any
 
+from csgmesh.domain.plc import Plc
 from csgmesh.domain.pslg import Pslg
 from csgmesh.errors import InputError, ShapeError
 
 __all__ = ["evaluate"]
 
 
-def evaluate(shape: Any, deviation: float | None = None, snap: float | None = None) -> Pslg:
+def evaluate(shape: Any, deviation: float | None = None, snap: float | None = None) -> Any:
     """Evaluate a shape to its exact, named boundary.
 
     Parameters
@@ -59,7 +60,7 @@ def evaluate(shape: Any, deviation: float | None = None, snap: float | None = No
     for name, value in (("deviation", deviation), ("snap", snap)):
         if value is not None and not _is_positive(value):
             raise ShapeError(f"{name} must be a positive, finite number; got {value!r}")
-    if isinstance(shape, Pslg):
+    if isinstance(shape, Pslg | Plc):
         return shape
     from csgmesh.boundary.planar import evaluate_plane
     from csgmesh.csg import Embed, Regions, Shape
@@ -69,6 +70,10 @@ def evaluate(shape: Any, deviation: float | None = None, snap: float | None = No
             "a shape must be a Shape, Regions, Embed or Pslg, such as Box((0, 0), (1, 1)); "
             f"got {reprlib.repr(shape)}"
         )
+    if shape.dim == 3:
+        from csgmesh.boundary.solid import evaluate_solid
+
+        return evaluate_solid(shape, deviation, snap)
     return evaluate_plane(shape, deviation, snap)
 
 

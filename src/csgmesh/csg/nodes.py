@@ -58,7 +58,7 @@ class Boolean(Shape):
     dim: int
     n_leaves: int
     n_nodes: int
-    height: int
+    depth: int
 
     @property
     def children(self) -> Sequence[Shape]:
@@ -81,7 +81,7 @@ class _Unary(Shape):
         object.__setattr__(self, "dim", shape.dim)
         object.__setattr__(self, "n_leaves", shape.n_leaves)
         object.__setattr__(self, "n_nodes", shape.n_nodes + 1)
-        object.__setattr__(self, "height", shape.height + 1)
+        object.__setattr__(self, "depth", shape.depth + 1)
         _check_size(self.n_nodes, type(self).__name__.lower())
 
     @property
@@ -186,7 +186,7 @@ def combined(operation: Operation, shapes: Sequence[Shape]) -> Shape:
         flat[0].dim,
         sum(s.n_leaves for s in flat),
         n_nodes,
-        1 + max(s.height for s in flat),
+        1 + max(s.depth for s in flat),
     )
 
 
@@ -212,7 +212,7 @@ def joined(operation: Operation, a: Shape, b: Shape) -> Shape:
         a.dim,
         a.n_leaves + b.n_leaves,
         n_nodes,
-        max(a.height + (left is None), b.height + (right is None)),
+        max(a.depth + (left is None), b.depth + (right is None)),
     )
 
 

@@ -34,14 +34,14 @@ class Primitive(Shape):
     """A leaf of the tree.
 
     A new primitive is a frozen dataclass of its canonical arguments, which `_settle` stores, with a
-    `kind`, the parts of its boundary, its exact boundary curves and its membership, in a file of
-    its own under ``csg/primitives`` and a line in that package's list.
+    `kind`, the parts of its boundary and its membership, in a file of its own under
+    ``csg/primitives`` and a line in that package's list. It is `Planar` with exact boundary curves,
+    or `Solid` with a body, or either by the length of its coordinates.
     """
 
     name: str | None = field(default=None, kw_only=True)
 
-    dim = 2
-    n_leaves = n_nodes = height = 1
+    n_leaves = n_nodes = depth = 1
 
     #: What an unnamed leaf is called; also the key in dictionaries and domain files.
     kind: ClassVar[str]
@@ -53,7 +53,8 @@ class Primitive(Shape):
     kinds: ClassVar[dict[str, type[Primitive]]] = {}
 
     def __init_subclass__(cls) -> None:
-        Primitive.kinds[cls.kind] = cls
+        if "kind" in cls.__dict__:
+            Primitive.kinds[cls.kind] = cls
 
     def _settle(self, name: str | None, **values: Any) -> None:
         for key, value in values.items():
@@ -76,10 +77,6 @@ class Primitive(Shape):
     def fill(self) -> str:
         """How winding numbers become membership: ``"nonzero"`` or ``"evenodd"``."""
         return "nonzero"
-
-    @abstractmethod
-    def curves(self) -> tuple[Curves, np.ndarray]:
-        """The closed boundary, interior on the left, and the part of every curve."""
 
     @abstractmethod
     def inside(self, points: np.ndarray) -> np.ndarray:
@@ -130,6 +127,17 @@ class Primitive(Shape):
         values = {f.name: getattr(self, f.name) for f in fields(self)}
         copy._settle(**(values | {"name": name if self.name is None else f"{name}.{self.name}"}))
         return copy
+
+
+@dataclass(frozen=True, eq=False, repr=False, init=False)
+class Planar(Primitive):
+    """A leaf in the plane."""
+
+    dim = 2
+
+    @abstractmethod
+    def curves(self) -> tuple[Curves, np.ndarray]:
+        """The closed boundary, interior on the left, and the part of every curve."""
 
 
 def _hashable(value: Any) -> Any:

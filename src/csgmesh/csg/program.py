@@ -13,7 +13,7 @@ from csgmesh.csg.extent import code_bounds
 from csgmesh.csg.membership import Classifier
 from csgmesh.csg.naming import Namer, part_names
 from csgmesh.csg.nodes import Affine, Boolean, Complement, Named, Primitive, Shape
-from csgmesh.csg.primitive import Frame
+from csgmesh.csg.primitive import Frame, Planar
 from csgmesh.csg.primitives.half_space import HalfSpace
 from csgmesh.csg.regions import Regions
 from csgmesh.domain.curves import Curves
@@ -69,7 +69,10 @@ class Leaf:
 
     def curves(self) -> tuple[Curves, np.ndarray]:
         """The placed closed boundary, interior on the left, and the part of every curve."""
-        table, part = self.primitive.curves()
+        primitive = self.primitive
+        if not isinstance(primitive, Planar):
+            raise TypeError(f"{self.label} lies in space")
+        table, part = primitive.curves()
         if self._inverse is None and not self.offset.any():
             return table, part
         table = table.transformed(self.matrix, self.offset)

@@ -35,7 +35,7 @@ class Shape(ABC):
         2 in the plane, 3 in space.
     n_leaves, n_nodes : int
         Leaves, and leaves and operations, every use of a shared part counted.
-    height : int
+    depth : int
         Levels of the tree: 1 for a primitive.
 
     Examples
@@ -51,7 +51,7 @@ class Shape(ABC):
     dim: int
     n_leaves: int
     n_nodes: int
-    height: int
+    depth: int
 
     @property
     @abstractmethod

@@ -34,8 +34,8 @@ _WIDEST_CHAIN = 8
 
 def expression(root: Shape) -> str:
     """``repr``: an expression that evaluates back, or in angle brackets what it would be."""
-    if root.height > DEEPEST_EXPRESSION or root.n_leaves > WIDEST_EXPRESSION:
-        return f"<{summary(root)}, {root.n_leaves:,} leaves, {root.height:,} levels>"
+    if root.depth > DEEPEST_EXPRESSION or root.n_leaves > WIDEST_EXPRESSION:
+        return f"<{summary(root)}, {root.n_leaves:,} leaves, {root.depth:,} levels>"
     texts: dict[int, str] = {}
     for node in postorder(root):
         texts[id(node)] = _expression(node, [texts[id(child)] for child in node.children])
@@ -142,6 +142,8 @@ def _leaf(kind: str, arguments: dict[str, Any]) -> Shape:
         raise ShapeError(f"from_dict: unknown kind of node {kind!r}")
     if not isinstance(arguments, dict):
         raise ShapeError(f"from_dict: {kind} needs a dictionary of arguments; got {arguments!r}")
+    if isinstance(arguments.get("shape"), dict):
+        arguments = arguments | {"shape": from_dict(arguments["shape"])}
     try:
         return Primitive.kinds[kind](**arguments)
     except TypeError as problem:
@@ -229,4 +231,6 @@ def _read_operation(kind: str, value: Any, number: int) -> tuple[list[int], list
 def _plain(value: Any) -> Any:
     if isinstance(value, np.ndarray):
         return value.tolist()
+    if isinstance(value, Shape):
+        return to_dict(value)
     return [_plain(v) for v in value] if isinstance(value, tuple) else value

@@ -43,7 +43,7 @@ def structurally_equal(a: Shape, b: Shape) -> bool:
     """Whether two trees are the same expression, operand by operand."""
     if a is b:
         return True
-    if a.n_nodes != b.n_nodes or a.height != b.height or hash(a) != hash(b):
+    if a.n_nodes != b.n_nodes or a.depth != b.depth or hash(a) != hash(b):
         return False
     compared: set[tuple[int, int]] = set()
     stack = [(a, b)]

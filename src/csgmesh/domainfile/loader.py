@@ -326,10 +326,12 @@ def _check_chords(document: Document, shape: Any, deviation: float | None, limit
     chords = 0.0
     for leaf in compile_shape(shape).leaves:
         lo, hi = leaf.box
-        if np.isfinite([lo, hi]).all() and (leaf.primitive.curves()[0].kind != LINE).any():
-            radius = 0.5 * float(np.hypot(*(hi - lo)))
+        in_space = len(lo) == 3
+        if np.isfinite([lo, hi]).all() and (in_space or (leaf.curves()[0].kind != LINE).any()):
+            radius = 0.5 * float(np.sqrt(((hi - lo) ** 2).sum()))
             # A chord over the angle a of a circle deviates by r (1 - cos(a/2)), about r a²/8.
-            chords += np.pi * np.sqrt(0.5 * radius / deviation)
+            around = np.pi * np.sqrt(0.5 * radius / deviation)
+            chords += around**2 if in_space else around
     if chords > limits.cells:
         raise document.error(
             f"deviation {deviation:g} needs about {chords:.1g} chords; a domain file may ask "

@@ -6,9 +6,9 @@ from collections.abc import Iterator
 from functools import cache
 from typing import Annotated, Any, ClassVar
 
-from pydantic import Field, GetCoreSchemaHandler, GetJsonSchemaHandler, create_model
-from pydantic_core import core_schema
+from pydantic import Field, create_model
 
+from csgmesh.domainfile.alternatives import OR_FLAG, OR_NAME, NestedShape
 from csgmesh.domainfile.expect import Expect
 from csgmesh.domainfile.fields import Parameters, Positive, Size, Text, Version, complaint
 from csgmesh.domainfile.parts import Part
@@ -18,6 +18,7 @@ from csgmesh.domainfile.vocabulary import (
     embedded_kinds,
     meshers,
     primitives,
+    swept,
     transformations,
 )
 
@@ -27,31 +28,6 @@ DIALECT = "https://json-schema.org/draft/2020-12/schema"
 
 _SHAPES = (*BOOLEANS, "shape", "complement")
 _WHOLES = ("regions", "embed")
-
-
-class _Or:
-    """Marks a field that takes a mapping, or a value of a simple type as it is."""
-
-    def __init__(self, simple: type, json_schema: dict[str, Any]) -> None:
-        self.simple = simple
-        self.json_schema = json_schema
-
-    def __get_pydantic_core_schema__(
-        self, source: Any, handler: GetCoreSchemaHandler
-    ) -> core_schema.CoreSchema:
-        def check(value: Any, inner: core_schema.ValidatorFunctionWrapHandler) -> Any:
-            return value if isinstance(value, self.simple) else inner(value)
-
-        return core_schema.no_info_wrap_validator_function(check, handler(source))
-
-    def __get_pydantic_json_schema__(
-        self, schema: core_schema.CoreSchema, handler: GetJsonSchemaHandler
-    ) -> dict[str, Any]:
-        return {"anyOf": [self.json_schema, handler(schema)]}
-
-
-_OR_NAME = _Or(str, {"type": "string", "description": "The name of a shape"})
-_OR_FLAG = _Or(bool, {"type": "boolean"})
 
 
 class ShapePart(Part):
@@ -105,7 +81,7 @@ class ShapePart(Part):
         elif source == "regions":
             for name, operand in value.items():
                 yield (source, name), operand
-        elif source == "embed":
+        elif source == "embed" or source in swept():
             yield (source, "shape"), value.shape
 
 
@@ -173,14 +149,14 @@ def _model(name: str, base: type[Part], fields: dict[str, Any]) -> Any:
 @cache
 def file_model() -> Any:
     """The model of a whole domain file, a subclass of `Part`."""
-    reference: Any = Annotated["Shape", _OR_NAME]  # noqa: F821
-    whole: Any = Annotated["Domain", _OR_NAME]  # noqa: F821
+    reference: Any = NestedShape
+    whole: Any = Annotated["Domain", OR_NAME]  # noqa: F821
     kinds = {key: _optional(model) for key, model in primitives().items()}
     kinds |= {key: _optional(_list_of(reference)) for key in BOOLEANS}
     kinds["shape"] = _optional(reference, "A shape by name, or one to transform further")
     beside = {key: _optional(model) for key, model in transformations().items()}
     beside["complement"] = _optional(
-        Annotated[reference, _OR_FLAG], "true beside a shape, or the shape itself"
+        Annotated[reference, OR_FLAG], "true beside a shape, or the shape itself"
     )
     shape = _model("Shape", ShapePart, {**kinds, **beside})
     shape.sources = tuple(kinds)
@@ -209,7 +185,7 @@ def file_model() -> Any:
         },
     )
     names = {"Shape": shape, "Domain": domain}
-    for model in (shape, embed, domain, file):
+    for model in (*(primitives()[key] for key in swept()), shape, embed, domain, file):
         model.model_rebuild(_types_namespace=names)
     return file
 

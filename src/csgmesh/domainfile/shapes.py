@@ -13,7 +13,7 @@ from csgmesh.domainfile.document import Document, KeyPath
 from csgmesh.domainfile.fields import LONGEST_TEXT
 from csgmesh.domainfile.limits import Limits
 from csgmesh.domainfile.schema import ShapePart
-from csgmesh.domainfile.vocabulary import BOOLEANS, EMBEDDED, Arguments
+from csgmesh.domainfile.vocabulary import BOOLEANS, EMBEDDED, Arguments, swept
 from csgmesh.errors import InputError
 from csgmesh.options import near
 
@@ -124,7 +124,7 @@ class Builder:
         source = part.source
         place = (*path, source)
         value = getattr(part, source)
-        if source in Primitive.kinds:
+        if source in Primitive.kinds and source not in swept():
             return self._call(Primitive.kinds[source], value, place)
         operands = [self.shape(operand, path + step) for step, operand in part.operands()]
         if source in BOOLEANS:
@@ -135,6 +135,9 @@ class Builder:
             return self.regions(dict(zip(value, operands, strict=True)), place)
         if source == "embed":
             return self._embed(operands[0], value, place)
+        if source in swept():
+            arguments = value.given() | {"shape": operands[0]}
+            return self._at(place, lambda: Primitive.kinds[source](**arguments))
         return operands[0]
 
     def _combined(self, operation: Any, operands: list[Shape], path: KeyPath) -> Shape:

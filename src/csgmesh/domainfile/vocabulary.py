@@ -12,6 +12,7 @@ from pydantic import Field, create_model
 
 from csgmesh.csg import EmbeddedPath, EmbeddedPoints
 from csgmesh.csg.nodes import SYMBOLS, Primitive, Shape
+from csgmesh.domainfile.alternatives import NestedShape
 from csgmesh.domainfile.fields import Count, Whole, field_type
 from csgmesh.domainfile.parts import Part
 
@@ -76,7 +77,7 @@ def arguments_of(
         if parameter.name == "self":
             continue
         annotation = str(getattr(parameter.annotation, "__name__", parameter.annotation))
-        kind = field_type(annotation)
+        kind = NestedShape if annotation == "Shape" else field_type(annotation)
         if counts and kind is Whole:
             kind = Count
         if parameter.default is inspect.Parameter.empty:
@@ -85,7 +86,15 @@ def arguments_of(
             # Left out of calls where the file does not give it, so the constructor's own default
             # acts; a default of None shows as "no default" in the JSON Schema.
             definitions[parameter.name] = (kind, Field(default=None))
-    return create_model(name, __base__=Arguments, __doc__=_summary(function), **definitions)
+    # Where the model stands decides what "Shape" means in it: the part of a file, not the class.
+    where = NestedShape.__metadata__[0].__module__
+    return create_model(
+        name,
+        __base__=Arguments,
+        __doc__=_summary(function),
+        __module__=where,
+        **definitions,
+    )
 
 
 @cache
@@ -97,6 +106,12 @@ def primitives() -> Mapping[str, type[Arguments]]:
         key: arguments_of(item, item.__name__ + "Arguments", counts=True)
         for key, item in Primitive.kinds.items()
     }
+
+
+@cache
+def swept() -> frozenset[str]:
+    """Keys of the primitives that are made of another shape, their argument ``shape``."""
+    return frozenset(key for key, model in primitives().items() if "shape" in model.model_fields)
 
 
 @cache

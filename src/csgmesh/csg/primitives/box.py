@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 
 from csgmesh.csg import checks
-from csgmesh.csg.primitive import Frame, Primitive
+from csgmesh.csg.primitive import Frame, Planar
+from csgmesh.csg.solid import Faceted, Solid
 from csgmesh.domain.curves import Curves
 from csgmesh.errors import ShapeError
 from csgmesh.tolerance import SMALLEST
@@ -17,15 +18,25 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
 
-@dataclass(frozen=True, eq=False, repr=False, init=False)
-class Box(Primitive):
-    """An axis-parallel rectangle from corner `lo` to corner `hi`.
+#: Two triangles a side, in the order of the parts; corner 4·i + 2·j + k lies at x_i, y_j, z_k.
+_TRIANGLES = (
+    np.array(("013", "032", "467", "475", "026", "064", "157", "173", "045", "051", "237", "276"))
+    .view("U1")
+    .astype(np.int64)
+    .reshape(12, 3)
+)
 
-    Parts of the boundary: ``left``, ``right``, ``bottom``, ``top``.
+
+@dataclass(frozen=True, eq=False, repr=False, init=False)
+class Box(Planar, Solid):
+    """An axis-parallel rectangle, or box in space, from corner `lo` to corner `hi`.
+
+    Parts of the boundary: ``left``, ``right`` (±x), ``bottom``, ``top`` (±y; in space ±z), and in
+    space ``front``, ``back`` (±y).
 
     Parameters
     ----------
-    lo, hi : (2,) float
+    lo, hi : (2,) or (3,) float
         Lowest and highest corner.
     name : str, optional
         Default ``"box"``.
@@ -53,8 +64,6 @@ class Box(Primitive):
         where = self.place(name)
         low = checks.vector(lo, "lo", where)
         high = checks.vector(hi, "hi", where, len(low))
-        if len(low) == 3:
-            raise ShapeError(f"{where}: boxes in space are not there yet; got lo {low}, hi {high}")
         for a, b in zip(low, high, strict=True):
             if not b - a >= SMALLEST:
                 raise ShapeError(
@@ -63,8 +72,13 @@ class Box(Primitive):
         self._settle(name, lo=low, hi=high)
 
     @property
+    def dim(self) -> int:  # type: ignore[override]
+        """2 in the plane, 3 in space."""
+        return len(self.lo)
+
+    @property
     def parts(self) -> tuple[str, ...]:
-        return ("left", "right", "bottom", "top")
+        return ("left", "right", "bottom", "top", "front", "back")[: 2 * self.dim]
 
     def curves(self) -> tuple[Curves, np.ndarray]:
         (x0, y0), (x1, y1) = self.lo, self.hi
@@ -72,17 +86,24 @@ class Box(Primitive):
         return Curves.lines(corners, np.roll(corners, -1, axis=0)), np.array([2, 1, 3, 0])
 
     def inside(self, points: np.ndarray) -> np.ndarray:
-        x, y = points[:, 0], points[:, 1]
-        result = (x >= self.lo[0]) & (x <= self.hi[0])
-        result &= y >= self.lo[1]
-        result &= y <= self.hi[1]
+        result = np.ones(len(points), bool)
+        for axis, (low, high) in enumerate(zip(self.lo, self.hi, strict=True)):
+            result &= points[:, axis] >= low
+            result &= points[:, axis] <= high
         return result
+
+    def body(self) -> Faceted:
+        choice = np.indices((2, 2, 2)).reshape(3, 8).T
+        corners = np.where(choice == 0, self.lo, self.hi)
+        part = np.array([0, 1, 2, 3, 4, 5])
+        return Faceted(corners, _TRIANGLES, np.repeat(part, 2), part)
+
+    def support(self, directions: np.ndarray) -> np.ndarray:
+        return np.maximum(directions * self.lo, directions * self.hi).sum(axis=1)
 
     def unit_frame(self) -> Frame:
         low, high = np.array(self.lo), np.array(self.hi)
         return Frame("cube", 0.5 * low + 0.5 * high, np.diag(2.0 / (high - low)))
 
     def extent(self, matrix: np.ndarray, offset: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        low = np.minimum(matrix * self.lo, matrix * self.hi).sum(axis=1)
-        high = np.maximum(matrix * self.lo, matrix * self.hi).sum(axis=1)
-        return low + offset, high + offset
+        return offset - self.support(-matrix), offset + self.support(matrix)

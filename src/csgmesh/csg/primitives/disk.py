@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 
 from csgmesh.csg import checks
-from csgmesh.csg.primitive import Frame, Primitive
+from csgmesh.csg.primitive import Frame, Planar
 from csgmesh.csg.primitives.ellipse import quarter_arcs
 from csgmesh.domain.curves import Curves
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, eq=False, repr=False, init=False)
-class Disk(Primitive):
+class Disk(Planar):
     """The points at most `radius` from `center`.
 
     Its boundary is a single part.

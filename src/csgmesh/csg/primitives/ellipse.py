@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 
 from csgmesh.csg import checks, matrices
-from csgmesh.csg.primitive import Frame, Primitive
+from csgmesh.csg.primitive import Frame, Planar
 from csgmesh.domain.curves import ARC, Curves
 
 if TYPE_CHECKING:
@@ -30,7 +30,7 @@ def quarter_arcs(center: np.ndarray, u: np.ndarray, v: np.ndarray) -> Curves:
 
 
 @dataclass(frozen=True, eq=False, repr=False, init=False)
-class Ellipse(Primitive):
+class Ellipse(Planar):
     """An ellipse.
 
     Its boundary is a single part.

@@ -1,4 +1,4 @@
-"""Half-planes (and, later, half-spaces)."""
+"""Half-planes and half-spaces."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 
 from csgmesh.csg import checks
-from csgmesh.csg.primitive import Frame, Primitive
+from csgmesh.csg.primitive import Frame, Planar
 from csgmesh.domain.curves import Curves
 from csgmesh.errors import ShapeError
 
@@ -17,17 +17,17 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, eq=False, repr=False, init=False)
-class HalfSpace(Primitive):
+class HalfSpace(Planar):
     """All points x with (x − point)·normal ≤ 0.
 
-    Its boundary, a line, is a single part. Unbounded: a domain needs enough of them, or something
-    bounded to cut.
+    Its boundary, a line or a plane, is a single part. Unbounded: a domain needs enough of them, or
+    something bounded to cut.
 
     Parameters
     ----------
-    point : (2,) float
+    point : (2,) or (3,) float
         On the boundary.
-    normal : (2,) float
+    normal : (2,) or (3,) float
         Points out of the half-space; its length does not matter.
     name : str, optional
         Default ``"half_space"``.
@@ -54,11 +54,14 @@ class HalfSpace(Primitive):
     def __init__(self, point: ArrayLike, normal: ArrayLike, *, name: str | None = None) -> None:
         where = self.place(name)
         start = checks.vector(point, "point", where)
-        if len(start) == 3:
-            raise ShapeError(f"{where}: half-spaces in space are not there yet; got point {start}")
         self._settle(
             name, point=start, normal=checks.direction(normal, "normal", where, len(start))
         )
+
+    @property
+    def dim(self) -> int:  # type: ignore[override]
+        """2 in the plane, 3 in space."""
+        return len(self.point)
 
     def curves(self) -> tuple[Curves, np.ndarray]:
         """A half-space has no closed boundary: whoever needs one clips the line to a box.

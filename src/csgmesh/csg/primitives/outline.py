@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from csgmesh.csg.contours import Contour, contour_curves, path_contours, read_contour
-from csgmesh.csg.primitive import Primitive
+from csgmesh.csg.primitive import Planar
 from csgmesh.csg.winding import WindingGrid
 from csgmesh.domain.curves import Curves
 from csgmesh.errors import ShapeError
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, eq=False, repr=False, init=False)
-class Outline(Primitive):
+class Outline(Planar):
     """Several closed contours of lines, circular arcs, quadratic and cubic Béziers (glyphs, SVG).
 
     Contours may cross themselves and each other; the filling rule decides what is inside. The whole

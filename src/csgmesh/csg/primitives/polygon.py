@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 
 from csgmesh.csg import checks
-from csgmesh.csg.primitive import Primitive
+from csgmesh.csg.primitive import Planar
 from csgmesh.csg.rings import check_ring, closed_lines, point_within, ring_area, without_repeats
 from csgmesh.csg.winding import WindingGrid
 from csgmesh.domain.curves import Curves
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, eq=False, repr=False, init=False)
-class Polygon(Primitive):
+class Polygon(Planar):
     """A polygon, less its holes.
 
     Rings close by themselves and may be given in either orientation; points that repeat the one

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 
 from csgmesh.csg import checks, matrices
-from csgmesh.csg.primitive import Primitive
+from csgmesh.csg.primitive import Planar
 from csgmesh.csg.rings import closed_lines
 from csgmesh.domain.curves import Curves
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, eq=False, repr=False, init=False)
-class RegularPolygon(Primitive):
+class RegularPolygon(Planar):
     """A regular polygon with `n` corners on a circle, the first at its right-hand end.
 
     Its boundary is a single part.

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 
 from csgmesh.csg import checks
-from csgmesh.csg.primitive import Primitive
+from csgmesh.csg.primitive import Planar
 from csgmesh.csg.rings import check_ring, closed_lines, ring_area
 from csgmesh.domain.curves import Curves
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, eq=False, repr=False, init=False)
-class Triangle(Primitive):
+class Triangle(Planar):
     """A triangle with corners `a`, `b`, `c`, in either orientation.
 
     Its boundary is a single part.
