@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -19,7 +20,7 @@ class Facets:
 
     Attributes
     ----------
-    arrays : dict of str to dict of str to ndarray
+    arrays : dict of str to mapping
         Arguments of `Mesh`.
     vertex : (k,) int64
         New vertices on facets with an exact curve.
@@ -29,7 +30,7 @@ class Facets:
         Whether that is off the middle of the chord.
     """
 
-    arrays: dict[str, dict[str, np.ndarray]]
+    arrays: dict[str, Any]
     vertex: np.ndarray
     place: np.ndarray
     is_bent: np.ndarray
