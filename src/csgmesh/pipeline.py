@@ -6,7 +6,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, Protocol
 
 from csgmesh.boundary import evaluate
-from csgmesh.errors import InputError
+from csgmesh.errors import InputError, MeshingError
 
 if TYPE_CHECKING:
     from csgmesh.domain.pslg import Pslg
@@ -36,7 +36,7 @@ def generate(
 
     Parameters
     ----------
-    shape : Shape, Regions, Embed or Pslg
+    shape : Shape, Regions, Embed, Periodic or Pslg
         What to mesh.
     mesher : object with ``generate``, optional
         How: `DelaunayRefinement` unless given.
@@ -93,7 +93,13 @@ def generate(
             f"{type(mesher).__name__} meshes domains in the plane; got a solid, which csgmesh can "
             "evaluate but not mesh yet"
         )
-    return mesher.generate(domain, size, progress)
+    mesh = mesher.generate(domain, size, progress)
+    if domain.periodic and not mesh.periodic:
+        raise MeshingError(
+            f"{type(mesher).__name__} does not match the vertices of periodic sides; "
+            "DelaunayRefinement and ConstrainedDelaunay do"
+        )
+    return mesh
 
 
 def check(mesh: Mesh, shape: Any = None) -> Certificate:
@@ -102,7 +108,7 @@ def check(mesh: Mesh, shape: Any = None) -> Certificate:
     Parameters
     ----------
     mesh : Mesh
-    shape : Shape, Regions, Embed or Pslg, optional
+    shape : Shape, Regions, Embed, Periodic or Pslg, optional
         With it nothing of the mesh is trusted but coordinates and connectivity: the shape is
         evaluated anew, and 1e5 points are compared with the tree itself.
 

@@ -101,6 +101,15 @@ def test_structured(run):
     check_picture(folder / "structured.png")
 
 
+def test_periodic_cell(run):
+    printed, folder = run("periodic_cell")
+    assert "status='passed'" in printed
+    found, series = map(float, re.search(r"conductivity (\S+), .* (\S+)\n", printed).groups())
+    # Of a mesh without matching sides the mean flux would be off by far more.
+    assert found == pytest.approx(series, rel=2e-3)
+    check_picture(folder / "periodic_cell.png")
+
+
 @pytest.mark.parametrize("path", sorted(EXAMPLES.glob("*.yaml")), ids=lambda path: path.stem)
 def test_domain_files(path):
     file = cm.load(path)

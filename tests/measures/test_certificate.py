@@ -330,7 +330,7 @@ def test_json_and_print():
     assert [c["rule"] for c in failed] == ["names", "facet names"]
     assert failed[1]["failures"][0]["entities"] == [3]
     assert "failed   facet names" in str(certificate)
-    assert repr(certificate).startswith("<Certificate: 2 failures; 20 rules,")
+    assert repr(certificate).startswith("<Certificate: 2 failures; ")
 
 
 def test_solid_meshes_are_refused():

@@ -19,7 +19,7 @@ def evaluate(shape: Any, deviation: float | None = None, snap: float | None = No
 
     Parameters
     ----------
-    shape : Shape, Regions, Embed or Pslg
+    shape : Shape, Regions, Embed, Periodic or Pslg
         A Pslg is returned as it is.
     deviation : float, optional
         Largest distance between a segment and its exact curve, in coordinate units. The default is
@@ -41,7 +41,8 @@ def evaluate(shape: Any, deviation: float | None = None, snap: float | None = No
     UnboundedDomainError, EmptyDomainError
         If there is nothing finite to mesh.
     EvaluationError
-        If boundaries nearly coincide in a way that the snap distance neither joins nor separates.
+        If boundaries nearly coincide in a way that the snap distance neither joins nor separates,
+        or periodic sides are not congruent.
 
     Notes
     -----
@@ -63,18 +64,23 @@ def evaluate(shape: Any, deviation: float | None = None, snap: float | None = No
     if isinstance(shape, Pslg | Plc):
         return shape
     from csgmesh.boundary.planar import evaluate_plane
-    from csgmesh.csg import Embed, Regions, Shape
+    from csgmesh.csg import Embed, Periodic, Regions, Shape
 
-    if not isinstance(shape, Shape | Regions | Embed):
+    if not isinstance(shape, Shape | Regions | Embed | Periodic):
         raise InputError(
-            "a shape must be a Shape, Regions, Embed or Pslg, such as Box((0, 0), (1, 1)); "
-            f"got {reprlib.repr(shape)}"
+            "a shape must be a Shape, Regions, Embed, Periodic or Pslg, such as "
+            f"Box((0, 0), (1, 1)); got {reprlib.repr(shape)}"
         )
     if shape.dim == 3:
         from csgmesh.boundary.solid import evaluate_solid
 
         return evaluate_solid(shape, deviation, snap)
-    return evaluate_plane(shape, deviation, snap)
+    domain = evaluate_plane(shape, deviation, snap)
+    if isinstance(shape, Periodic) and shape.pairs:
+        from csgmesh.boundary.periodic import pair_sides
+
+        return pair_sides(domain, shape.pairs)
+    return domain
 
 
 def _is_positive(value: Any) -> bool:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from csgmesh.csg.booleans import difference, intersection, symmetric_difference, union
 from csgmesh.csg.embed import Embed, EmbeddedPath, EmbeddedPoints
+from csgmesh.csg.periodic import Periodic
 from csgmesh.csg.primitive import Primitive
 from csgmesh.csg.primitives import (
     Ball,
@@ -41,6 +42,7 @@ __all__ = [
     "Extrude",
     "HalfSpace",
     "Outline",
+    "Periodic",
     "Polygon",
     "Polyhedron",
     "Primitive",

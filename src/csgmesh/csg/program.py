@@ -13,6 +13,7 @@ from csgmesh.csg.extent import code_bounds
 from csgmesh.csg.membership import Classifier
 from csgmesh.csg.naming import Namer, part_names
 from csgmesh.csg.nodes import Affine, Boolean, Complement, Named, Primitive, Shape
+from csgmesh.csg.periodic import Periodic
 from csgmesh.csg.primitive import Frame, Planar
 from csgmesh.csg.primitives.half_space import HalfSpace
 from csgmesh.csg.regions import Regions
@@ -158,8 +159,8 @@ class Program:
         return np.min(lows, axis=0), np.max(highs, axis=0)
 
 
-def compile_shape(shape: Shape | Regions | Embed) -> Program:
-    """Compile a shape, regions, or either with embedded paths and points.
+def compile_shape(shape: Shape | Regions | Embed | Periodic) -> Program:
+    """Compile a shape, regions, or either with embedded paths and points or periodic sides.
 
     Examples
     --------
@@ -170,6 +171,8 @@ def compile_shape(shape: Shape | Regions | Embed) -> Program:
     >>> program.regions
     (('domain', (('leaf', 0), ('leaf', 1), ('difference', 2))),)
     """
+    if isinstance(shape, Periodic):
+        shape = shape.shape
     domain = shape.shape if isinstance(shape, Embed) else shape
     entries = domain.entries if isinstance(domain, Regions) else (("domain", domain),)
     compiler = _Compiler(domain.dim)

@@ -58,6 +58,7 @@ def pslg_fields(
         "snap": coordinate_ulp(xy),
         "report": Report(),
         "oracle": FaceOracle(xy, seg, between),
+        "periodic": (),
     }
 
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from csgmesh.domain.curves import LINE
+from csgmesh.domain.periodic import partners
 from csgmesh.domain.pslg import Pslg
 from csgmesh.tolerance import EXCUSED_ANGLE
 
@@ -103,7 +104,29 @@ def sharp_corners(pslg: Pslg) -> SharpCorners:
         onward = turned + opening[there]
         near = sharp[there] & (onward < limit) & (after[there] != here)
         here, turned, there = here[near], onward[near], after[there[near]]
-    return SharpCorners(apexes, angle, radius, is_sharp.reshape(2, m).T)
+    corners = SharpCorners(apexes, angle, radius, is_sharp.reshape(2, m).T)
+    return _repeated(pslg, corners) if pslg.periodic and len(apexes) else corners
+
+
+def _repeated(pslg: Pslg, corners: SharpCorners) -> SharpCorners:
+    """The same shells on both sides of periodic pairs, so that both are split alike.
+
+    An image of an apex need not be one itself: it becomes one.
+    """
+    other = partners(len(pslg.segments), pslg.periodic)
+    here = np.flatnonzero(other >= 0)
+    angle, radius = np.full(pslg.n_points, np.inf), np.zeros(pslg.n_points)
+    angle[corners.vertex], radius[corners.vertex] = corners.angle, corners.radius
+    ends, images = pslg.segments[here], pslg.segments[other[here], ::-1]
+    before = -1.0
+    while radius.sum() != before:
+        before = radius.sum()
+        np.minimum.at(angle, images, angle[ends])
+        np.maximum.at(radius, images, radius[ends])
+    sharp = corners.is_sharp_end.copy()
+    sharp[here] |= corners.is_sharp_end[other[here], ::-1]
+    vertex = np.flatnonzero(np.isfinite(angle))
+    return SharpCorners(vertex, angle[vertex], radius[vertex], sharp)
 
 
 def _may_be_sharp(n_points: int, vertex: np.ndarray, tangent: np.ndarray) -> np.ndarray:

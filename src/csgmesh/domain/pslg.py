@@ -12,6 +12,7 @@ from typing import Any, Protocol
 import numpy as np
 
 from csgmesh.domain.curves import Curves, cross
+from csgmesh.domain.periodic import PeriodicSides
 from csgmesh.domain.report import Report
 
 
@@ -63,6 +64,8 @@ class Pslg:
         the region of lower number on the left of an interface.
     point_marker : (n,) int64
         Entry of `boundary_names` for embedded points, -1 for others.
+    periodic : tuple of PeriodicSides
+        Sides that must be meshed alike; none in a domain of arrays.
 
     Examples
     --------
@@ -85,6 +88,7 @@ class Pslg:
     snap: float
     report: Report
     oracle: Oracle | None
+    periodic: tuple[PeriodicSides, ...]
 
     def __init__(
         self,
@@ -113,6 +117,7 @@ class Pslg:
             "snap": 0.0,
             "report": Report(),
             "oracle": None,
+            "periodic": (),
         }
         pslg._fill(defaults | values)
         return pslg

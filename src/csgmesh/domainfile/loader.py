@@ -49,7 +49,7 @@ class DomainFile:
     ----------
     path : Path
         The file.
-    shape : Shape, Regions or Embed
+    shape : Shape, Regions, Embed or Periodic
         What to mesh.
     mesher : mesher or None
         How; None for the default mesher.

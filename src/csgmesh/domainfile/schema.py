@@ -27,7 +27,7 @@ DIALECT = "https://json-schema.org/draft/2020-12/schema"
 
 
 _SHAPES = (*BOOLEANS, "shape", "complement")
-_WHOLES = ("regions", "embed")
+_WHOLES = ("regions", "embed", "periodic")
 
 
 class ShapePart(Part):
@@ -81,12 +81,12 @@ class ShapePart(Part):
         elif source == "regions":
             for name, operand in value.items():
                 yield (source, name), operand
-        elif source == "embed" or source in swept():
+        elif source in ("embed", "periodic") or source in swept():
             yield (source, "shape"), value.shape
 
 
 class _DomainPart(ShapePart):
-    """A shape, several materials, or a shape with embedded paths and points."""
+    """A shape, several materials, or either with embedded items or periodic sides."""
 
     def check(self) -> None:
         """As of shapes; and materials are not transformed."""
@@ -164,7 +164,14 @@ def file_model() -> Any:
     embed = _model(
         "EmbedArguments", Arguments, {"shape": (whole, ...), "items": (_list_of(item), ...)}
     )
-    wholes = {"regions": _optional(dict[str, reference]), "embed": _optional(embed)}
+    periodic = _model(
+        "PeriodicArguments", Arguments, {"shape": (whole, ...), "pairs": (list[list[Text]], ...)}
+    )
+    wholes = {
+        "regions": _optional(dict[str, reference]),
+        "embed": _optional(embed),
+        "periodic": _optional(periodic),
+    }
     domain = _model("Domain", _DomainPart, {**kinds, **wholes, **beside})
     domain.sources = (*kinds, *wholes)
     mesh = _model("Mesh", MeshPart, {key: _optional(model) for key, model in meshers().items()})
@@ -185,7 +192,7 @@ def file_model() -> Any:
         },
     )
     names = {"Shape": shape, "Domain": domain}
-    for model in (*(primitives()[key] for key in swept()), shape, embed, domain, file):
+    for model in (*(primitives()[key] for key in swept()), shape, embed, periodic, domain, file):
         model.model_rebuild(_types_namespace=names)
     return file
 

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator, Mapping
 from functools import partial
 from typing import Any
 
-from csgmesh.csg import Embed, Regions
+from csgmesh.csg import Embed, Periodic, Regions
 from csgmesh.csg.nodes import Primitive, Shape, combined
 from csgmesh.domainfile.document import Document, KeyPath
 from csgmesh.domainfile.fields import LONGEST_TEXT
@@ -108,7 +108,7 @@ class Builder:
         return name
 
     def shape(self, part: Definition, path: KeyPath) -> Any:
-        """The Shape, Regions or Embed of a part; recursion is bounded by the document's nesting."""
+        """The shape or whole domain of a part; recursion is bounded by the document's nesting."""
         if isinstance(part, str):
             return self.built[self._known(part, path)]
         shape = self._source(part, path)
@@ -135,6 +135,8 @@ class Builder:
             return self.regions(dict(zip(value, operands, strict=True)), place)
         if source == "embed":
             return self._embed(operands[0], value, place)
+        if source == "periodic":
+            return self._periodic(operands[0], value, place)
         if source in swept():
             arguments = value.given() | {"shape": operands[0]}
             return self._at(place, lambda: Primitive.kinds[source](**arguments))
@@ -161,6 +163,13 @@ class Builder:
             (key,) = item.keys_written
             items.append(self._call(EMBEDDED[key], getattr(item, key), (*path, "items", i, key)))
         return self._at(path, lambda: Embed(shape, items))
+
+    def _periodic(self, shape: Any, arguments: Any, path: KeyPath) -> Periodic:
+        for i, pair in enumerate(arguments.pairs):
+            if len(pair) != 2:
+                message = f"a pair is of two names, not {len(pair)}"
+                raise self.document.error(message, (*path, "pairs", i))
+        return self._at(path, lambda: Periodic(shape, arguments.pairs))
 
     def _call(self, function: Callable[..., Any], arguments: Arguments, path: KeyPath) -> Any:
         return self._at(path, lambda: function(**arguments.given()))

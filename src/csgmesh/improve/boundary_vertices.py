@@ -40,14 +40,17 @@ def classify_boundary(mesh: Mesh, facets: np.ndarray, kind: np.ndarray, around: 
     n = mesh.n_points
     n_facets = np.bincount(facets.ravel(), minlength=n)
     kind[n_facets > 0] = FIXED
-    is_probe = mesh.point_marker >= 0
-    kind[is_probe] = FIXED
+    stays = mesh.point_marker >= 0
+    # Matching points could only move together.
+    for pair in mesh.periodic:
+        stays[pair.points] = True
+    kind[stays] = FIXED
     number = np.arange(len(facets), dtype=np.int32)
     around[facets[:, 1], 0] = number
     around[facets[:, 0], 1] = number
     if mesh.curves is None:
         return
-    at = np.flatnonzero((n_facets == 2) & (around >= 0).all(axis=1) & ~is_probe)
+    at = np.flatnonzero((n_facets == 2) & (around >= 0).all(axis=1) & ~stays)
     f, g = around[at].T
     curve, t = mesh.facet_curve["line"], mesh.facet_interval["line"]
     sides, marker = mesh.facet_region["line"], mesh.facet_marker["line"]

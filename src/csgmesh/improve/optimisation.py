@@ -33,8 +33,9 @@ def optimise(
     optimal Delaunay triangulations, the mean of the neighbours, or where a pattern search ends;
     edges turn where that and new places for their four vertices help; where neither does, all
     neighbours move together. Vertices of the boundary and of interfaces slide along their exact
-    curve; corners, junctions, embedded points and ends of embedded paths stay. So do all vertices
-    on facets without an exact curve, such as those of a mesh read from a file.
+    curve; corners, junctions, embedded points, ends of embedded paths and the points of periodic
+    sides stay. So do all vertices on facets without an exact curve, such as those of a mesh read
+    from a file.
 
     Parameters
     ----------

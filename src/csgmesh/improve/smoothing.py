@@ -25,7 +25,7 @@ def smooth(
     smallest angle; where there are quads, the one with the smallest scaled Jacobian: the sine of
     the angle at a quad's sharpest or bluntest corner, or of a triangle's smallest angle over that
     of 60 degrees. Vertices of the boundary slide along their exact curve; corners, junctions and
-    embedded points stay, and so do vertices on facets without an exact curve.
+    embedded points stay, and so do periodic sides and vertices on facets without an exact curve.
 
     Parameters
     ----------

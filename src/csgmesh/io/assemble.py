@@ -40,13 +40,17 @@ class Numbered:
 
 @dataclass
 class Listing:
-    """Blocks of entities in the order of a file; see `add`."""
+    """Blocks of entities in the order of a file; see `add`.
+
+    Once there is a mesh, `number` holds the number in it of each point, -1 for those left out.
+    """
 
     path: Path
     points: np.ndarray
     regions: Numbered = field(default_factory=Numbered)
     markers: Numbered = field(default_factory=Numbered)
     blocks: dict[str, list[tuple[np.ndarray, np.ndarray]]] = field(default_factory=dict)
+    number: np.ndarray = field(default_factory=lambda: np.zeros(0, np.int64))
 
     def region_number(self, tag: int) -> int:
         """The region for a number that has no name in the file."""
@@ -112,6 +116,7 @@ def _mesh(listing: Listing) -> Mesh:
     for rows in cells.values():
         used[rows] = True
     new = np.cumsum(used) - 1
+    listing.number = np.where(used, new, -1)
     counts = {"points": int((~used).sum()), "lines": loose, "repeated cells": doubled}
     skipped = {what: n for what, n in counts.items() if n}
     try:

@@ -9,13 +9,16 @@ dimension.
 Points keep their order, for which they are all listed under the first surface; Gmsh itself does not
 mind, and readers that take them as they come get the numbering of the mesh.
 
+Periodic pairs go to the section $Periodic, the second side as the slave of the first. Read back,
+they are called by the first names of the entities.
+
 Source: Geuzaine and Remacle, Gmsh reference manual, "MSH file format".
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import BinaryIO
 
@@ -24,6 +27,7 @@ import numpy as np
 from csgmesh.errors import FileFormatError
 from csgmesh.io.assemble import INNER, OUTER, Listing
 from csgmesh.io.msh_parse import FROM_GMSH, GMSH_TYPE, Entity, MshContent, is_version_4_1, parse
+from csgmesh.io.msh_periodic import links, pairs
 from csgmesh.mesh import KINDS, Mesh
 
 _INT, _SIZE, _DOUBLE = "<i4", "<u8", "<f8"
@@ -49,6 +53,10 @@ def write(path: Path, mesh: Mesh, *, binary: bool = True) -> None:
         file.write(b"$EndNodes\n$Elements\n")
         _write_elements(sink, mesh, groups)
         file.write(b"$EndElements\n")
+        if mesh.periodic:
+            file.write(b"$Periodic\n")
+            _write_periodic(sink, mesh, groups)
+            file.write(b"$EndPeriodic\n")
 
 
 def read(path: Path) -> Mesh:
@@ -82,7 +90,17 @@ def read(path: Path) -> Mesh:
         order = np.argsort(np.concatenate([p[0] for p in parts]), kind="stable")
         rows = np.concatenate([p[1] for p in parts])[order]
         listing.add(kind, rows, np.concatenate([p[2] for p in parts])[order])
-    return listing.mesh()
+    mesh = listing.mesh()
+    named = [
+        (link, (_side(found, link.dim, link.master), _side(found, link.dim, link.entity)))
+        for link in found.links
+        if link.dim == 1
+    ]
+    return replace(mesh, periodic=pairs(mesh, named, listing.number)) if named else mesh
+
+
+def _side(found: MshContent, dim: int, entity: int) -> str:
+    return (_boundary(found, dim, entity) or (OUTER,))[0]
 
 
 def _boundary(found: MshContent, dim: int, entity: int) -> tuple[str, ...]:
@@ -276,6 +294,17 @@ def _write_elements(sink: _Binary | _Text, mesh: Mesh, groups: _Groups) -> None:
         rows = block.rows if order is None else block.rows[:, np.argsort(order)]
         np.add(rows, 1, out=table[:, 1:], casting="unsafe")
         sink.table(_SIZE, table)
+    sink.end()
+
+
+def _write_periodic(sink: _Binary | _Text, mesh: Mesh, groups: _Groups) -> None:
+    found = links(mesh, [(curve.kind, curve.which) for curve in groups.curves])
+    sink.line((_SIZE, [len(found)]))
+    for link in found:
+        sink.line((_INT, [link.dim, link.entity, link.master]))
+        sink.line((_SIZE, [len(link.affine)]), (_DOUBLE, link.affine))
+        sink.line((_SIZE, [len(link.nodes)]))
+        sink.table(_SIZE, link.nodes + 1)
     sink.end()
 
 

@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from csgmesh.errors import FileFormatError
+from csgmesh.io.msh_periodic import Link
 from csgmesh.mesh import KINDS
 
 #: Gmsh's numbers for the kinds of cells.
@@ -53,6 +54,7 @@ class MshContent:
     names: dict[tuple[int, int], str] = field(default_factory=dict)
     physical: dict[tuple[int, int], tuple[int, ...]] = field(default_factory=dict)
     elements: list[Entity] = field(default_factory=list)
+    links: list[Link] = field(default_factory=list)
 
 
 def is_version_4_1(path: Path, data: bytes) -> bool:
@@ -72,7 +74,7 @@ def parse(path: Path, data: bytes) -> MshContent:
     reader = _Reader(path, data)
     content = MshContent()
     seen = set()
-    readers = {"Entities": _entities, "Nodes": _nodes, "Elements": _elements}
+    readers = {"Entities": _entities, "Nodes": _nodes, "Elements": _elements, "Periodic": _periodic}
     while name := reader.next_section():
         seen.add(name)
         if name == "MeshFormat":
@@ -133,6 +135,16 @@ def _elements(reader: _Reader, content: MshContent) -> None:
         content.elements.append(Entity(dim, entity, kind, table[:, 0], rows))
 
 
+def _periodic(reader: _Reader, content: MshContent) -> None:
+    for _ in range(reader.sizes(1)[0]):
+        dim, entity, master = reader.ints(3)
+        affine = reader.double_array(reader.sizes(1)[0])
+        count = reader.sizes(1)[0]
+        table = reader.size_array(2 * count).reshape(count, 2)
+        nodes = _numbered(reader, content.point_tags, table)
+        content.links.append(Link(dim, entity, master, affine, nodes))
+
+
 def _numbered(reader: _Reader, tags: np.ndarray, wanted: np.ndarray) -> np.ndarray:
     """Positions of node tags."""
     n = len(tags)
@@ -143,9 +155,7 @@ def _numbered(reader: _Reader, tags: np.ndarray, wanted: np.ndarray) -> np.ndarr
         rows = np.minimum(np.searchsorted(tags, wanted), max(n - 1, 0))
         unknown = tags[rows] != wanted if n else np.ones(wanted.shape, bool)
     if unknown.any():
-        raise reader.error(
-            f"has an element with node {int(wanted[unknown][0])}, which is not listed"
-        )
+        raise reader.error(f"has an entry with node {int(wanted[unknown][0])}, which is not listed")
     return rows
 
 

@@ -17,7 +17,7 @@ import numpy as np
 
 from csgmesh.domain.curves import WIDTH, Curves
 from csgmesh.errors import FileFormatError, InputError
-from csgmesh.mesh import Mesh
+from csgmesh.mesh import Mesh, PeriodicPair
 
 _VERSION = 1
 _CELLS = ("cells", "cell_region")
@@ -25,6 +25,7 @@ _CELLS = ("cells", "cell_region")
 _LINEAGE = ("cell_parent", "cell_green")
 _FACETS = ("facets", "facet_marker", "facet_region", "facet_curve", "facet_interval")
 _CURVES = ("kind", "data", "interval")
+_PAIR = ("matrix", "offset", "points")
 
 
 def write(path: Path, mesh: Mesh, *, compress: bool = False) -> None:
@@ -36,6 +37,7 @@ def write(path: Path, mesh: Mesh, *, compress: bool = False) -> None:
         "info": dict(mesh.info),
         "cell_kinds": list(mesh.cells),
         "facet_kinds": list(mesh.facets),
+        "periodic": [[*pair.names, list(pair.facets)] for pair in mesh.periodic],
     }
     try:
         text = json.dumps(header, ensure_ascii=False, allow_nan=True)
@@ -49,6 +51,9 @@ def write(path: Path, mesh: Mesh, *, compress: bool = False) -> None:
         by_kind = getattr(mesh, name)
         if any((array >= 0).any() for array in by_kind.values()):
             arrays.update({f"{name}.{k}": array for k, array in by_kind.items()})
+    for k, pair in enumerate(mesh.periodic):
+        arrays.update({f"periodic.{k}.{name}": getattr(pair, name) for name in _PAIR})
+        arrays.update({f"periodic.{k}.facets.{kind}": rows for kind, rows in pair.facets.items()})
     if mesh.curves is not None:
         arrays.update({f"curves.{name}": getattr(mesh.curves, name) for name in _CURVES})
     method = zipfile.ZIP_DEFLATED if compress else zipfile.ZIP_STORED
@@ -82,6 +87,7 @@ def read(path: Path) -> Mesh:
             boundary_names=header["boundary_names"],
             point_marker=_needed(path, arrays, "point_marker"),
             curves=curves,
+            periodic=_pairs(path, arrays, header),
             **fields,
         )
     except (InputError, TypeError, AttributeError) as error:
@@ -123,6 +129,20 @@ def _header(path: Path, arrays: Mapping[str, np.ndarray]) -> dict:
     return header
 
 
+def _pairs(
+    path: Path, arrays: Mapping[str, np.ndarray], header: Mapping[str, Any]
+) -> tuple[PeriodicPair, ...]:
+    found = []
+    for k, entry in enumerate(header.get("periodic", ())):
+        if not isinstance(entry, list) or len(entry) != 3 or not isinstance(entry[2], list):
+            raise FileFormatError(f"{path} has a damaged header: periodic pair {k} is {entry!r}")
+        first, second, kinds = entry
+        matrix, offset, points = (_needed(path, arrays, f"periodic.{k}.{n}") for n in _PAIR)
+        facets = {kind: _needed(path, arrays, f"periodic.{k}.facets.{kind}") for kind in kinds}
+        found.append(PeriodicPair((first, second), matrix, offset, points, facets))
+    return tuple(found)
+
+
 def _needed(path: Path, arrays: Mapping[str, np.ndarray], name: str) -> np.ndarray:
     if name not in arrays:
         raise FileFormatError(f"{path} is damaged: the array {name!r} is missing")
@@ -141,6 +161,11 @@ def _check(path: Path, mesh: Mesh) -> None:
         ("facet_region", mesh.facet_region, -1, len(mesh.region_names)),
         ("facet_curve", mesh.facet_curve, -1, n_curves),
     ]
+    for pair in mesh.periodic:
+        ranges.append(("periodic.points", {"": pair.points}, 0, mesh.n_points))
+        for kind, rows in pair.facets.items():
+            n = len(mesh.facets.get(kind, ()))
+            ranges.append(("periodic.facets", {kind: rows}, 0, n))
     for name, by_kind, lowest, end in ranges:
         for kind, array in by_kind.items():
             if array.size and (array.min() < lowest or array.max() >= end):

@@ -31,6 +31,7 @@ from csgmesh.measures.rules.names import (
     check_names,
     check_sides,
 )
+from csgmesh.measures.rules.periodic import check_periodic
 from csgmesh.measures.rules.structure import check_blocks
 from csgmesh.mesh import Mesh
 
@@ -54,6 +55,7 @@ RULES: tuple[tuple[str, Callable[[Case], Check]], ...] = (
     ("facet names", check_facet_names),
     ("regions", check_sides),
     ("embedded points", check_embedded_points),
+    ("periodic sides", check_periodic),
     ("area", check_area),
     ("smallest angle", check_angles),
     ("Delaunay", check_delaunay),

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, field, fields
 from functools import cached_property
 from types import MappingProxyType
@@ -13,7 +13,9 @@ from numpy.typing import ArrayLike
 
 from csgmesh.errors import InputError
 from csgmesh.mesh.blocks import Block, frozen_blocks
+from csgmesh.mesh.description import counted, listed, same
 from csgmesh.mesh.fields import by_kind, connectivity, frozen, names_of_markers, point_array
+from csgmesh.mesh.periodic import PeriodicPair, representatives
 
 if TYPE_CHECKING:
     from csgmesh.domain.curves import Curves
@@ -64,6 +66,8 @@ class Mesh:
     cell_green : mapping of str to array_like (m,), optional
         Cells with the same number are a green closure, undone before the next refinement; -1 for
         all others.
+    periodic : sequence of PeriodicPair, optional
+        Sides whose points and facets match; see `csgmesh.Periodic`.
     info : mapping, optional
         Facts from the mesher: its name, the angle asked for, how many points it inserted.
     blocks : mapping of str to Block, optional
@@ -98,6 +102,7 @@ class Mesh:
     blocks: Mapping[str, Block] = field(default_factory=dict)
     cell_parent: Arrays = field(default_factory=dict)
     cell_green: Arrays = field(default_factory=dict)
+    periodic: tuple[PeriodicPair, ...] = ()
 
     def __post_init__(self) -> None:
         points = point_array(self.points)
@@ -121,6 +126,7 @@ class Mesh:
             "facet_curve": by_kind("facet_curve", self.facet_curve, facets, (), -1),
             "facet_interval": by_kind("facet_interval", self.facet_interval, facets, (2,), 0.0),
             "point_marker": frozen("point_marker", marker, np.int64, (len(points),)),
+            "periodic": tuple(self.periodic),
             "info": MappingProxyType(dict(self.info)),
             "blocks": frozen_blocks(self.blocks),
         }
@@ -132,10 +138,10 @@ class Mesh:
         return Mesh, tuple(dict(v) if isinstance(v, MappingProxyType) else v for v in plain)
 
     def __repr__(self) -> str:
-        cells = ", ".join(_count(len(rows), kind) for kind, rows in self.cells.items())
-        text = f"<Mesh {self.dim}D: {_count(self.n_points, 'point')}, {cells or 'no cells'}, "
-        text += f"{_count(self.n_facets, 'facet')}, regions: {_listed(self.region_names)}"
-        return text + (f", boundaries: {_listed(self.names)}>" if self.names else ">")
+        cells = ", ".join(counted(len(rows), kind) for kind, rows in self.cells.items())
+        text = f"<Mesh {self.dim}D: {counted(self.n_points, 'point')}, {cells or 'no cells'}, "
+        text += f"{counted(self.n_facets, 'facet')}, regions: {listed(self.region_names)}"
+        return text + (f", boundaries: {listed(self.names)}>" if self.names else ">")
 
     @property
     def dim(self) -> int:
@@ -277,6 +283,24 @@ class Mesh:
             found[kind] = np.flatnonzero(both & (sides[:, 0] != sides[:, 1]))
         return found
 
+    def periodic_representatives(self) -> np.ndarray:
+        """One of the points that periodicity identifies with each point: the lowest number.
+
+        Returns
+        -------
+        ndarray (n_points,) of int64
+            Where pairs meet, at corners, all points of an orbit have one representative.
+
+        Examples
+        --------
+        >>> import csgmesh as cm
+        >>> cell = cm.Periodic(cm.Box((0, 0), (1, 1)), [("box.left", "box.right"),
+        ...                                             ("box.bottom", "box.top")])
+        >>> cm.generate(cell, cm.ConstrainedDelaunay()).periodic_representatives()
+        array([0, 0, 0, 0])
+        """
+        return representatives(self.n_points, self.periodic)
+
     def locate(self, points: ArrayLike) -> np.ndarray:
         """Numbers of the cells that contain points.
 
@@ -343,12 +367,12 @@ class Mesh:
         if not isinstance(other, Mesh):
             return False
         compared = (f.name for f in fields(self) if f.name not in _NOT_COMPARED)
-        if not all(_same(getattr(self, n), getattr(other, n)) for n in compared):
+        if not all(same(getattr(self, n), getattr(other, n)) for n in compared):
             return False
         if self.curves is None or other.curves is None:
             return self.curves is other.curves
         mine, theirs = self.curves, other.curves
-        return all(_same(getattr(mine, n), getattr(theirs, n)) for n in ("kind", "data"))
+        return all(same(getattr(mine, n), getattr(theirs, n)) for n in ("kind", "data"))
 
     def _markers(self, pattern: str) -> np.ndarray:
         from csgmesh.domain.names import find_markers
@@ -374,21 +398,3 @@ class Mesh:
 
 
 _NOT_COMPARED = ("curves", "domain", "info", "blocks")
-
-
-def _same(a: Any, b: Any) -> bool:
-    if isinstance(a, Mapping):
-        return list(a) == list(b) and all(_same(a[k], b[k]) for k in a)
-    if isinstance(a, np.ndarray):
-        return np.array_equal(a, b)
-    return bool(a == b)
-
-
-def _count(n: int, noun: str) -> str:
-    plural = {"hexahedron": "hexahedra", "vertex": "vertices"}.get(noun, noun + "s")
-    return f"{n:,} {noun if n == 1 else plural}"
-
-
-def _listed(names: Sequence[str], most: int = 8) -> str:
-    rest = len(names) - most
-    return ", ".join(names[:most]) + (f" and {rest} more" if rest > 0 else "")

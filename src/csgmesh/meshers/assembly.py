@@ -9,6 +9,7 @@ import numpy as np
 
 from csgmesh import kernels
 from csgmesh.mesh import Mesh
+from csgmesh.meshers.pairing import periodic_pairs
 
 if TYPE_CHECKING:
     from csgmesh.meshers.workspace import Workspace
@@ -35,6 +36,7 @@ def assemble(work: Workspace, info: Mapping[str, object]) -> Mesh:
         boundary_names=domain.boundary_names,
         point_marker=markers,
         curves=domain.curves,
+        periodic=periodic_pairs(work, number) if domain.periodic else (),
         domain=domain,
         info={**info, "n_points": len(points), "n_cells": len(cells)},
         **{name: {"line": array} for name, array in facets.items()},

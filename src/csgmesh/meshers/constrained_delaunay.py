@@ -10,6 +10,7 @@ from csgmesh.domain.pslg import Pslg
 from csgmesh.errors import InputError, MeshingError
 from csgmesh.mesh import Mesh
 from csgmesh.meshers.assembly import assemble
+from csgmesh.meshers.pairing import paired_pieces, paired_spacing
 from csgmesh.meshers.subdivision import Spaced, subdivide
 from csgmesh.meshers.workspace import CROSSING, ON_SEGMENT, Progress, Workspace
 
@@ -81,7 +82,9 @@ def triangulated(
     domain: Pslg, pieces: np.ndarray, progress: Progress | None, spacing: Spaced | None = None
 ) -> Workspace:
     """Triangulate a domain whose segments are cut into `pieces` (m,) parts, regions flooded."""
+    spacing = paired_spacing(domain, spacing)
     for _ in range(HALVINGS):
+        pieces = paired_pieces(domain, pieces)
         work = Workspace(domain, subdivide(domain, pieces, spacing), progress)
         work.triangulate()
         conflict = _recover(work)

@@ -8,6 +8,7 @@ from csgmesh import kernels
 from csgmesh.domain.input_angles import SharpCorners
 from csgmesh.errors import MeshingError
 from csgmesh.meshers.background import Background
+from csgmesh.meshers.pairing import mirror_splits
 from csgmesh.meshers.workspace import BUDGET, ROOM, SLICE, STUCK, Workspace, grown
 from csgmesh.tolerance import coordinate_ulp
 
@@ -77,6 +78,30 @@ class Refiner:
 
     def run(self) -> bool:
         """Refine until nothing is bad: True; or until the budget of points is used up: False."""
+        finished = self._run()
+        while finished and self.work.domain.periodic and mirror_splits(self):
+            finished = self._run()
+        return finished
+
+    def ask_for_splits(self, number: np.ndarray) -> None:
+        """Let the next run split these subsegments first."""
+        work = self.work
+        wanted = np.zeros(self.n_sub, bool)
+        wanted[number] = True
+        origin = work.origin[: 4 * work.n_triangles].reshape(-1, 4)
+        sub = work.sub[: 4 * work.n_triangles].reshape(-1, 4)
+        triangle, edge = np.nonzero(origin[:, 3:] >> np.arange(3) & 1)
+        number = sub[triangle, edge]
+        _, first = np.unique(number, return_index=True)
+        first = first[wanted[number[first]]]
+        triangle, edge = triangle[first], edge[first]
+        ends = origin[triangle, edge], origin[triangle, (edge + 1) % 3]
+        entries = np.column_stack([4 * triangle + edge, *ends]).astype(np.int32)
+        self.todo = grown(self.todo, max(len(self.todo), 3 * len(entries) + 3 * 2048))
+        self.todo[: entries.size] = entries.ravel()
+        self.count[3] = len(entries)
+
+    def _run(self) -> bool:
         while True:
             status = self._slice()
             work = self.work

@@ -7,6 +7,7 @@ import numpy as np
 from csgmesh import kernels
 from csgmesh.domain.pslg import Pslg
 from csgmesh.errors import BudgetError
+from csgmesh.meshers.pairing import smaller_of_both
 from csgmesh.meshers.refiner import CIRCLE_SHARE, SEGMENT_SHARE, Refiner
 from csgmesh.size.resolve import ResolvedSize, evaluate
 
@@ -129,6 +130,8 @@ class Sizing:
         self.known = n
         self._boundaries()
         self._limit()
+        while smaller_of_both(self.refiner):
+            self._limit()
         return self.smallest()
 
     def smallest(self) -> float:

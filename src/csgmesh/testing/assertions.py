@@ -18,7 +18,7 @@ def assert_valid(mesh: Mesh, shape: Any = None) -> None:
     Parameters
     ----------
     mesh : Mesh
-    shape : Shape, Regions, Embed or Pslg, optional
+    shape : Shape, Regions, Embed, Periodic or Pslg, optional
         What was meshed; it is evaluated anew and compared.
 
     Raises

@@ -48,7 +48,7 @@ def draw(x: object, path: str | os.PathLike[str] | None = None, **options: Any) 
 
     Parameters
     ----------
-    x : Shape, Regions, Embed, Pslg or Mesh
+    x : Shape, Regions, Embed, Periodic, Pslg or Mesh
         What to draw; shapes are evaluated first.
     path : str or PathLike, optional
         A ``.png``, ``.svg`` or ``.pdf`` file to write.
@@ -143,8 +143,8 @@ def _scene(x: object) -> Scene:
     if isinstance(x, Pslg):
         return pslg_scene(x, vertices=True)
     from csgmesh.boundary import evaluate
-    from csgmesh.csg import Embed, Regions, Shape
+    from csgmesh.csg import Embed, Periodic, Regions, Shape
 
-    if not isinstance(x, (Shape, Regions, Embed)):
+    if not isinstance(x, (Shape, Regions, Embed, Periodic)):
         raise InputError(f"draw knows shapes, Pslg and Mesh; got {type(x).__name__}")
     return pslg_scene(evaluate(x), vertices=False)

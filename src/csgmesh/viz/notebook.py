@@ -15,6 +15,7 @@ _DRAWN = (
     ("csgmesh.csg.shape", "Shape"),
     ("csgmesh.csg.regions", "Regions"),
     ("csgmesh.csg.embed", "Embed"),
+    ("csgmesh.csg.periodic", "Periodic"),
 )
 
 
