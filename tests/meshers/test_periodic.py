@@ -119,6 +119,19 @@ def test_improvement_keeps_sides_alike(case: str) -> None:
     assert_paired(cm.smooth(mesh))
 
 
+@pytest.mark.parametrize("method", ["red-green", "newest vertex", "longest edge"])
+def test_refined_meshes_keep_pairs(method: str) -> None:
+    domain = cm.Periodic(*CASES["curved sides"])
+    mesh = cm.generate(domain, size=0.2)
+    beside = mesh.locate([[0.02, 0.1], [2.98, 0.95], [1.5, 0.98]])
+    for cells in (None, beside):
+        finer = cm.refine(cm.refine(mesh, cells, method=method), cells, method=method)
+        assert finer.n_cells > mesh.n_cells
+        assert_paired(finer)
+        certificate = cm.check(finer, domain)
+        assert certificate.ok, str(certificate)
+
+
 def test_the_finer_side_decides() -> None:
     """Sizes on one side hold on the other, and grow from there."""
     domain = cm.Periodic(BOX, CELL)

@@ -24,8 +24,8 @@ class PeriodicPair:
     matrix, offset : (dim, dim), (dim,) float64
         The map ``matrix @ x + offset`` from the first side to the second.
     points : (k, 2) int64
-        Numbers of points on the first side and of their images on the second, in the order of the
-        first. A point that is its own image, such as the apex of a sector, is paired with itself.
+        Numbers of points on the first side and of their images on the second. A point that is its
+        own image, such as the apex of a sector, is paired with itself.
     facets : mapping of str to (m, 2) int64
         Numbers of facets that match, by kind. Both have the domain on their left, so in the plane
         the second runs from the image of the first's end to that of its start.
@@ -96,3 +96,31 @@ def representatives(n_points: int, pairs: tuple[PeriodicPair, ...]) -> np.ndarra
         if (lowest == before).all():
             break
     return lowest
+
+
+def halved_pairs(pairs: tuple[PeriodicPair, ...], middle: np.ndarray) -> tuple[PeriodicPair, ...]:
+    """The pairs of a mesh whose line facets are halved, partners alike.
+
+    Parameters
+    ----------
+    pairs : tuple of PeriodicPair
+        Of the mesh before.
+    middle : (f,) int64
+        The new point on each facet, -1 for none. The halves stand where their facet stood.
+    """
+    halved = middle >= 0
+    first = np.arange(len(middle)) + np.cumsum(halved) - halved
+    made = []
+    for pair in pairs:
+        rows = pair.facets["line"]
+        a, b = rows.T
+        both = halved[a]
+        facets = first[rows]
+        # The second facet runs against the first: its second half is the first one's first.
+        facets[both, 1] += 1
+        behind = first[rows[both]] + [1, 0]
+        order = np.argsort(np.r_[np.arange(len(rows)), np.flatnonzero(both)], kind="stable")
+        points = np.vstack([pair.points, np.column_stack([middle[a], middle[b]])[both]])
+        lines = np.vstack([facets, behind])[order]
+        made.append(PeriodicPair(pair.names, pair.matrix, pair.offset, points, {"line": lines}))
+    return tuple(made)

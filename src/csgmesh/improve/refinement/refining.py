@@ -18,6 +18,7 @@ from csgmesh.improve.refinement.marks import marked_cells
 from csgmesh.improve.refinement.promise import angle_reached, corner_sines, refined_info
 from csgmesh.improve.refinement.templates import BISECTION, RED_GREEN
 from csgmesh.mesh import Mesh
+from csgmesh.mesh.periodic import halved_pairs
 from csgmesh.options import check_choice
 
 METHODS = ("red-green", "longest edge", "newest vertex")
@@ -166,6 +167,18 @@ class _Division:
         if marked is not None or watch is not None:
             limit = [np.full(len(b.rows), b.rows.shape[1] - 1) for b in self.blocks.values()]
             edges.spread(self.halved, np.concatenate(limit), self.reference, watch)
+            while self._halve_partners():
+                edges.spread(self.halved, np.concatenate(limit), self.reference, watch)
+
+    def _halve_partners(self) -> bool:
+        """Halve the partners of halved facets on periodic sides; whether there were any."""
+        changed = False
+        for pair in self.mesh.periodic:
+            both = self.edges.facet_edge[pair.facets["line"]]
+            uneven = both[self.halved[both[:, 0]] != self.halved[both[:, 1]]]
+            self.halved[uneven] = 1
+            changed |= len(uneven) > 0
+        return changed
 
     def _hanging(self) -> np.ndarray | None:
         """Mark edges that are halved on one side already; returns the cells that watch the halves.
@@ -216,6 +229,7 @@ class _Division:
             point_marker=np.r_[mesh.point_marker, np.full(len(points) - n, -1)],
             curves=mesh.curves,
             domain=mesh.domain,
+            periodic=halved_pairs(mesh.periodic, middle_of_facet),
             info=refined_info(mesh, self.method, children.n_groups > 0),
             **facets.arrays,
         )
