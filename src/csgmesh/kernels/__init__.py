@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import importlib
 import sys
+import threading
 import warnings
 from types import ModuleType
 from typing import Any
@@ -24,6 +25,8 @@ _HOME = {
     "flood_regions": "segments",
     "fill": "lattice",
     "refine": "refinement",
+    "count_outer": "components",
+    "join_triangles": "components",
     "mark_used": "export",
     "extract": "export",
     "look_up": "background",
@@ -51,6 +54,9 @@ _HOME = {
     "gather_stars": "star_smoothing.moves",
     "move_vertices": "star_smoothing.moves",
 }
+
+#: Loading a module sets numba's cache directory for a while, which all threads share.
+_LOADING = threading.RLock()
 
 
 def _load(name: str) -> ModuleType:
@@ -84,6 +90,7 @@ def _load(name: str) -> ModuleType:
 def __getattr__(name: str) -> Any:
     if name not in _HOME:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    value = getattr(_load(_HOME[name]), name)
+    with _LOADING:
+        value = getattr(_load(_HOME[name]), name)
     globals()[name] = value
     return value

@@ -22,7 +22,7 @@ def assemble(work: Workspace, info: Mapping[str, object]) -> Mesh:
     """
     domain = work.domain
     source, number, cells, regions = _cells(work)
-    facets = _facets(work, number)
+    facets = facets_of(work, number)
     markers = _point_markers(work, len(source), number)
     points = work.points[: 2 * work.n_points].reshape(-1, 2).take(source, axis=0)
     # A mesh takes over arrays that nobody can write to, and copies others.
@@ -65,7 +65,7 @@ def _cells(work: Workspace) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndar
     return source, number, cells, regions
 
 
-def _facets(work: Workspace, number: np.ndarray) -> dict[str, Any]:
+def facets_of(work: Workspace, number: np.ndarray) -> dict[str, Any]:
     """Subsegments as facets, each with its first region on the left."""
     domain, segment = work.domain, work.segment
     ends = number.take(work.ends.reshape(-1, 2)).astype(np.int64)

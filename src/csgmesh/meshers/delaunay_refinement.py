@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -13,9 +14,12 @@ from csgmesh.errors import BudgetError, InputError
 from csgmesh.improve import optimise
 from csgmesh.mesh import Mesh
 from csgmesh.meshers.assembly import assemble
+from csgmesh.meshers.components import parts_of
+from csgmesh.meshers.joining import join
 from csgmesh.meshers.meshing import Meshing
-from csgmesh.meshers.refiner import Refiner
-from csgmesh.meshers.workspace import Progress, Workspace
+from csgmesh.meshers.partwise import Partwise
+from csgmesh.meshers.side_by_side import cores
+from csgmesh.meshers.workspace import Progress
 from csgmesh.size import resolve
 
 #: Beyond this no ordering of Delaunay refinement is known to end on most inputs.
@@ -37,6 +41,9 @@ class DelaunayRefinement:
     improve : bool, default False
         Whether to raise the smallest angles afterwards by moving vertices and turning edges, to 39
         degrees where the boundary lets them: see `csgmesh.improve.optimise`.
+    threads : int, optional
+        Bound on the number of threads, by default the number of processor cores. Components of a
+        large domain are meshed side by side; the mesh does not depend on it.
 
     Raises
     ------
@@ -92,6 +99,7 @@ class DelaunayRefinement:
     gradation: float = 0.3
     max_points: int = 10**7
     improve: bool = False
+    threads: int | None = None
 
     def __post_init__(self) -> None:
         if not 0 <= self.min_angle <= LARGEST_MIN_ANGLE:
@@ -105,6 +113,8 @@ class DelaunayRefinement:
             raise InputError(f"max_points must be at least 3; got {self.max_points!r}")
         if not isinstance(self.improve, bool):
             raise InputError(f"improve must be True or False; got {self.improve!r}")
+        if self.threads is not None and (isinstance(self.threads, bool) or self.threads < 1):
+            raise InputError(f"threads must be at least 1, or None; got {self.threads!r}")
 
     def generate(self, domain: Pslg, size: Any = None, progress: Progress | None = None) -> Mesh:
         """Mesh a domain.
@@ -134,13 +144,20 @@ class DelaunayRefinement:
         """
         wanted = resolve(size, domain)
         limits = self.min_angle, self.gradation, self.max_points
-        run = Meshing(domain, sharp_corners(domain), limits, progress)
-        try:
-            finished = run.run(wanted)
-        except BudgetError as error:
-            error.mesh = self._mesh(run)
-            raise
-        mesh = self._mesh(run)
+        parts = parts_of(domain, wanted, self.max_points, progress)
+        if len(parts) > 1:
+            together = Partwise(parts, wanted, limits, progress)
+            threads = self.threads or cores()
+            finished = together.run(threads)
+            mesh = self._joined(domain, together, threads)
+        else:
+            run = Meshing(domain, sharp_corners(domain), limits, progress)
+            try:
+                finished = run.run(wanted)
+            except BudgetError as error:
+                error.mesh = self._mesh(run)
+                raise
+            mesh = self._mesh(run)
         if not finished:
             raise BudgetError(_where_it_stopped(mesh, self, size), mesh)
         uniform = wanted.uniform if wanted is not None else None
@@ -148,16 +165,25 @@ class DelaunayRefinement:
 
     def _mesh(self, run: Meshing) -> Mesh:
         run.refiner.publish()
-        return assemble(run.work, self._info(run.work, run.refiner))
+        return assemble(run.work, self._info([run], len(run.domain.points)))
 
-    def _info(self, work: Workspace, refiner: Refiner) -> dict[str, object]:
+    def _joined(self, domain: Pslg, together: Partwise, threads: int) -> Mesh:
+        for run in together.runs:
+            run.refiner.publish()
+        works = [run.work for run in together.runs]
+        info = self._info(together.runs, sum(len(part.point) for part in together.parts))
+        return join(domain, together.parts, works, info, threads)
+
+    def _info(self, runs: Sequence[Meshing], n_given: int) -> dict[str, object]:
+        # The mesh does not depend on the number of threads, and so says nothing of it.
+        options = {name: value for name, value in vars(self).items() if name != "threads"}
         return {
             "method": "DelaunayRefinement",
             "min_angle": self.min_angle,
-            "options": dict(vars(self)),
-            "n_steiner": work.n_points - len(work.domain.points),
-            "n_sharp_corners": int((refiner.radius > 0).sum()),
-            "n_given_up": int(refiner.count[7]),
+            "options": options,
+            "n_steiner": sum(run.work.n_points for run in runs) - n_given,
+            "n_sharp_corners": sum(int((run.refiner.radius > 0).sum()) for run in runs),
+            "n_given_up": sum(int(run.refiner.count[7]) for run in runs),
         }
 
 
