@@ -44,7 +44,8 @@ def parts_of(
 ) -> list[Part]:
     """Parts that do not touch, in the order of their first points; one if it is not worthwhile.
 
-    Components that touch at a vertex stay together, and so do small ones.
+    Components that touch at a vertex stay together, and so do small ones, and all of a domain with
+    periodic sides, which may belong to different components.
 
     Parameters
     ----------
@@ -56,7 +57,7 @@ def parts_of(
     progress : callable, optional
         Told of the triangulation that finds the components.
     """
-    if not is_worthwhile(domain, size, max_points) or count_outer(domain) < 2:
+    if domain.periodic or not is_worthwhile(domain, size, max_points) or count_outer(domain) < 2:
         return [Part(domain, np.arange(len(domain.points)))]
     component = components(domain, progress)
     begin = component[domain.segments[:, 0]]

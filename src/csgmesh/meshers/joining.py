@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from typing import TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -61,7 +61,7 @@ def join(
     cells = np.empty((n_cells, 3), np.int64)
     regions = np.empty(n_cells, np.int64)
 
-    def settle(share: _Share) -> dict[str, np.ndarray]:
+    def settle(share: _Share) -> dict[str, Any]:
         work = share.work
         at, n = share.first_point, len(share.others)
         number = np.full(work.n_points, -1, np.int32)
@@ -78,7 +78,9 @@ def join(
         return facets_of(work, number)
 
     found = _each(settle, shares, threads)
-    facets = {name: np.concatenate([each[name] for each in found]) for name in found[0]}
+    facets: dict[str, Any] = {
+        name: np.concatenate([each[name] for each in found]) for name in found[0]
+    }
     markers = np.full(n_points, -1, np.int64)
     markers[: int(is_used.sum())] = domain.point_marker[is_used]
     for array in (points, cells, regions, markers, *facets.values()):
@@ -91,6 +93,7 @@ def join(
         boundary_names=domain.boundary_names,
         point_marker=markers,
         curves=domain.curves,
+        periodic=(),
         domain=domain,
         info={**info, "n_points": n_points, "n_cells": n_cells},
         **{name: {"line": array} for name, array in facets.items()},

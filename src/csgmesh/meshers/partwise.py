@@ -13,8 +13,8 @@ from csgmesh.meshers.components import Part
 from csgmesh.meshers.meshing import Meshing
 from csgmesh.meshers.side_by_side import SideBySide
 from csgmesh.meshers.workspace import Progress
-from csgmesh.size.field import UniformSize
-from csgmesh.size.resolve import ResolvedSize, Source
+from csgmesh.size.field import Source, UniformSize
+from csgmesh.size.resolve import ResolvedSize
 
 
 class Partwise:
