@@ -29,6 +29,7 @@ N_SEGMENT = 3  # squared length of a subsegment allowed, as a share of the squar
 N_SIZE = 4  # squared size where it is uniform, 0 without
 N_SCALE = 5  # 1 / squared diagonal
 N_TINY = 6  # squared length below which nothing is split
+N_LEVEL = 7  # how many times as long as wanted edges may be for now
 
 # Places in `count`.
 C_POINTS = 0
@@ -40,6 +41,7 @@ C_LIMIT = 5  # points allowed
 C_BLOCKED = 6  # splits in a row that another subsegment stood in the way of
 C_GIVEN_UP = 7  # triangles left bad because nothing could be split further
 C_WHERE = 8  # subsegment that could not be split
+C_REGULAR = 9  # triangles from this one on need no first look
 
 ONE = np.int64(1)
 ALL_SEEN = np.int64(2**62)
@@ -137,7 +139,7 @@ def apex_height(aim, u, v, mx, my, nx, ny, uu):
     if aim.graded == 0:
         h2 = aim.number[N_SIZE]
         return sqrt(max(h2 / uu - 0.25, 0.75)) if h2 > 0.0 else 0.0
-    h = 0.5 * (aim.size[u] + aim.size[v])
+    h = 0.5 * (aim.size[u] + aim.size[v]) * aim.number[N_LEVEL]
     high = sqrt(max(h * h / uu - 0.25, 0.75))
     if aim.graded == BACKGROUND:
         there, _ = background_size(aim.ground, aim.home[u], mx + high * nx, my + high * ny)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import hypot
+from math import sqrt
 
 from numba import njit
 
@@ -11,6 +11,8 @@ from .triangulation import following, preceding
 
 #: A value that would sink by less than this share is left alone.
 WORTH = 1e-3
+#: Mean distance of a triangle's points from its nearest vertex, per square root of twice its area.
+BETWEEN = 0.4
 
 
 @njit(**HELPER)
@@ -26,11 +28,16 @@ def put(v, queue, queued, state, n):
 @njit(**HELPER)
 def lower(xy, size, u, v, growth):
     """Lower the size at v if u forces it; whether it did."""
-    limit = size[u] + growth * hypot(xy[2 * u] - xy[2 * v], xy[2 * u + 1] - xy[2 * v + 1])
-    if limit < size[v] * (1.0 - WORTH):
-        size[v] = limit
-        return True
-    return False
+    excess = size[v] * (1.0 - WORTH) - size[u]
+    if excess <= 0.0:
+        return False
+    dx = xy[2 * u] - xy[2 * v]
+    dy = xy[2 * u + 1] - xy[2 * v + 1]
+    square = growth * growth * (dx * dx + dy * dy)
+    if excess * excess <= square:
+        return False
+    size[v] = size[u] + sqrt(square)
+    return True
 
 
 @njit(**HELPER)
@@ -92,8 +99,11 @@ def limit_gradation(points, origin, twin, n_triangles, sizes, growth, edges, que
 
 
 @njit(**ENTRY)
-def expected_points(points, origin, twin, n_triangles, sizes, per_area):
-    """Integral of per_area / h² over the domain: how many points its sizes ask for."""
+def expected_points(points, origin, twin, n_triangles, sizes, growth, per_area):
+    """Integral of per_area / h² over the domain: how many points its sizes ask for at least.
+
+    Between vertices that are far from one another sizes may be as large as the growth allows.
+    """
     xy = pointer(points)
     here = pointer(origin)
     there = pointer(twin)
@@ -106,6 +116,6 @@ def expected_points(points, origin, twin, n_triangles, sizes, per_area):
             c = here[t + 2]
             area = (xy[2 * b] - xy[2 * a]) * (xy[2 * c + 1] - xy[2 * a + 1])
             area -= (xy[2 * b + 1] - xy[2 * a + 1]) * (xy[2 * c] - xy[2 * a])
-            h = (size[a] + size[b] + size[c]) / 3.0
+            h = (size[a] + size[b] + size[c]) / 3.0 + growth * BETWEEN * sqrt(max(area, 0.0))
             total += 0.5 * area * per_area / (h * h)
     return total

@@ -15,6 +15,7 @@ from .aim import (
     C_GIVEN_UP,
     C_LIMIT,
     C_POINTS,
+    C_REGULAR,
     C_SUBSEGMENTS,
     C_TODO,
     C_TRIANGLES,
@@ -111,7 +112,8 @@ def improve(net, subs, aim, q, t, stamp, b, room):
 def look_at_all(net, subs, aim, q, room_queue, room_todo):
     """First look at every triangle and subsegment. Returns DONE or ROOM."""
     t = aim.count[C_FIRST]
-    while t < 4 * aim.count[C_TRIANGLES]:
+    until = 4 * min(aim.count[C_TRIANGLES], aim.count[C_REGULAR])
+    while t < until:
         if q.state[1] + 8 > room_queue or aim.count[C_TODO] + 8 > room_todo:
             aim.count[C_FIRST] = t
             return ROOM

@@ -22,11 +22,22 @@ class Background:
     origin: np.ndarray
     twin: np.ndarray
     size: np.ndarray
+    n_triangles: int
 
     @classmethod
     def of(cls, work: Workspace, size: np.ndarray) -> Background:
         """What a workspace holds, with its sizes."""
-        return cls(work.points, work.origin, work.twin, size)
+        return cls(work.points, work.origin, work.twin, size, work.n_triangles)
+
+    def triangles(self) -> tuple[np.ndarray, np.ndarray]:
+        """Corners of the domain's triangles, (n, 3), and edges with the domain on their left."""
+        corners, sides = (
+            a[: 4 * self.n_triangles].reshape(-1, 4) for a in (self.origin, self.twin)
+        )
+        inside = sides[:, 3] >= 0
+        corners, sides = corners[inside, :3], sides[inside, :3]
+        t, e = np.nonzero(~inside[sides >> 2])
+        return corners, np.column_stack([corners[t, e], corners[t, (e + 1) % 3]])
 
     def at(self, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Sizes at flat points, and the triangles (numbered by half-edge) that hold them."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,8 +11,9 @@ from csgmesh.domain.pslg import Pslg
 from csgmesh.errors import InputError, MeshingError
 from csgmesh.mesh import Mesh
 from csgmesh.meshers.assembly import assemble
+from csgmesh.meshers.lattice import Blocks
 from csgmesh.meshers.pairing import paired_pieces, paired_spacing
-from csgmesh.meshers.subdivision import Spaced, subdivide
+from csgmesh.meshers.subdivision import Spaced, Subdivision, subdivide
 from csgmesh.meshers.workspace import CROSSING, ON_SEGMENT, Progress, Workspace
 
 #: A curve's chords are halved this often before a crossing of two of them is taken for an error.
@@ -79,17 +81,29 @@ class ConstrainedDelaunay:
 
 
 def triangulated(
-    domain: Pslg, pieces: np.ndarray, progress: Progress | None, spacing: Spaced | None = None
+    domain: Pslg,
+    pieces: np.ndarray,
+    progress: Progress | None,
+    spacing: Spaced | None = None,
+    lay: Callable[[Subdivision], Blocks | None] | None = None,
 ) -> Workspace:
-    """Triangulate a domain whose segments are cut into `pieces` (m,) parts, regions flooded."""
+    """Triangulate a domain whose segments are cut into `pieces` (m,) parts, regions flooded.
+
+    `lay` may put blocks of ready triangles between the pieces.
+    """
     spacing = paired_spacing(domain, spacing)
     for _ in range(HALVINGS):
         pieces = paired_pieces(domain, pieces)
-        work = Workspace(domain, subdivide(domain, pieces, spacing), progress)
+        cut = subdivide(domain, pieces, spacing)
+        blocks = lay(cut) if lay is not None else None
+        known = cut if blocks is None else cut.with_points(blocks.outline)
+        work = Workspace(domain, known, progress)
         work.triangulate()
         conflict = _recover(work)
         if conflict is None:
             work.flood()
+            if blocks is not None:
+                blocks.weave_into(work, len(cut.points))
             return work
         finer = [s for s in conflict if is_bent(domain, s)]
         if not finer:

@@ -2,19 +2,24 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
 from csgmesh.domain.input_angles import SharpCorners
 from csgmesh.domain.pslg import Pslg
 from csgmesh.errors import BudgetError
 from csgmesh.meshers.background import Background, Spacing
+from csgmesh.meshers.bands import lay_bands
 from csgmesh.meshers.constrained_delaunay import triangulated
-from csgmesh.meshers.lattice import fill_with_lattice
+from csgmesh.meshers.lattice import Blocks, lay_lattice
 from csgmesh.meshers.refiner import Refiner
 from csgmesh.meshers.sizing import OVER_BUDGET, POINTS_PER_AREA, Sizing, feature_sizes
-from csgmesh.meshers.subdivision import Spaced, pieces_by_turning
+from csgmesh.meshers.subdivision import Spaced, Subdivision, pieces_by_turning
 from csgmesh.meshers.workspace import Progress, Workspace
 from csgmesh.size.resolve import ResolvedSize
+
+Lay = Callable[[Subdivision], Blocks | None]
 
 
 class Meshing:
@@ -39,9 +44,11 @@ class Meshing:
         self.work: Workspace
         self.refiner: Refiner
 
-    def start(self, pieces: np.ndarray, spacing: Spaced | None = None) -> None:
+    def start(
+        self, pieces: np.ndarray, spacing: Spaced | None = None, lay: Lay | None = None
+    ) -> None:
         """Triangulate the domain, with its segments cut into pieces."""
-        self.work = triangulated(self.domain, pieces, self.progress, spacing)
+        self.work = triangulated(self.domain, pieces, self.progress, spacing, lay)
 
     def prepare(self) -> None:
         """Make a refiner of what is triangulated."""
@@ -56,8 +63,7 @@ class Meshing:
     def uniform(self, size: float) -> bool:
         """Mesh with one size which no feature undercuts."""
         pieces = np.rint(self.domain.lengths() / size).astype(np.int64)
-        self.start(self._at_least(pieces))
-        fill_with_lattice(self.work, size)
+        self.start(self._at_least(pieces), lay=lambda cut: lay_lattice(self.domain, cut, size))
         self.prepare()
         self.refiner.set_uniform(size)
         return self.refiner.run()
@@ -74,9 +80,8 @@ class Meshing:
         spacing = self._spacing()
         pieces = self._at_least(np.rint(spacing.edges).astype(np.int64))
         spacing.even = pieces > np.maximum(np.rint(spacing.edges), 1)
-        self.start(pieces, spacing)
-        if size.uniform is not None:
-            fill_with_lattice(self.work, size.uniform, ground)
+        fixed = np.array(size.constants)
+        self.start(pieces, spacing, lambda cut: lay_bands(self.domain, cut, ground, fixed))
         self.prepare()
         self.refiner.set_background(ground)
         if not self.refiner.run():

@@ -22,7 +22,7 @@ OFF_CENTRE = 0.475
 
 # Where sizes come from, as the kernel counts it.
 EVEN, INHERITED, GIVEN = range(3)
-NOTHING = Background(np.empty(1), np.empty(1, np.int32), np.empty(1, np.int32), np.empty(1))
+NOTHING = Background(np.empty(1), np.empty(1, np.int32), np.empty(1, np.int32), np.empty(1), 0)
 
 N_BUCKETS = 1024
 #: Queue entries a cavity may need, per cavity slot.
@@ -50,6 +50,7 @@ class Refiner:
                 0.0,
                 1.0 / diagonal**2,
                 tiny**2,
+                1.0,
             ]
         )
         n_sub = len(work.pieces.ends)
@@ -73,7 +74,8 @@ class Refiner:
         self.ground = NOTHING
         self.graded = EVEN
         self.count = np.array(
-            [work.n_points, work.n_triangles, n_sub, 0, 0, max_points, 0, 0, -1], np.int64
+            [work.n_points, work.n_triangles, n_sub, 0, 0, max_points, 0, 0, -1, work.regular_from],
+            np.int64,
         )
 
     def run(self) -> bool:
@@ -138,9 +140,15 @@ class Refiner:
         self.size = grown(size, len(self.work.points) // 2)
         self.home = grown(home, len(self.work.points) // 2)
 
+    def set_level(self, level: float) -> None:
+        """Let edges be so many times as long as wanted."""
+        self.number[2] = (CIRCLE_SHARE * level) ** 2
+        self.number[3] = (SEGMENT_SHARE * level) ** 2
+        self.number[7] = level
+
     def look_again(self) -> None:
         """Let the next run test every triangle anew, after sizes have changed."""
-        self.count[4] = 0
+        self.count[4], self.count[9] = 0, 2**62
 
     def segments(self) -> np.ndarray:
         """The domain's segment of each subsegment."""

@@ -8,7 +8,7 @@ from csgmesh import kernels
 from csgmesh.domain.pslg import Pslg
 from csgmesh.errors import BudgetError
 from csgmesh.meshers.pairing import smaller_of_both
-from csgmesh.meshers.refiner import CIRCLE_SHARE, SEGMENT_SHARE, Refiner
+from csgmesh.meshers.refiner import Refiner
 from csgmesh.size.resolve import ResolvedSize, evaluate
 
 #: Points per area of an equilateral triangulation of edge length 1.
@@ -67,9 +67,11 @@ class Sizing:
         refiner = self.refiner
         guess = refiner.size[: refiner.work.n_points].copy()
         refiner.set_sizes()
-        self.update()
+        self._evaluate()
+        # The guesses grow no faster than the gradation: nothing can spread from equal ones.
         if not (refiner.size[: len(guess)] < SURPRISE * guess).any():
             return True
+        self._spread()
         return self.settle(1.0)
 
     def settle(self, level: float) -> bool:
@@ -89,8 +91,7 @@ class Sizing:
         """
         refiner = self.refiner
         self.check_budget()
-        refiner.number[2] = (CIRCLE_SHARE * level) ** 2
-        refiner.number[3] = (SEGMENT_SHARE * level) ** 2
+        refiner.set_level(level)
         refiner.look_again()
         before = self.known
         if not refiner.run():
@@ -104,7 +105,13 @@ class Sizing:
         """Refuse at once what cannot be done within the budget."""
         work, refiner = self.refiner.work, self.refiner
         expected = kernels.expected_points(
-            work.points, work.origin, work.twin, work.n_triangles, refiner.size, POINTS_PER_AREA
+            work.points,
+            work.origin,
+            work.twin,
+            work.n_triangles,
+            refiner.size,
+            self.gradation,
+            POINTS_PER_AREA,
         )
         if expected > OVER_BUDGET * refiner.max_points:
             at = int(np.argmin(refiner.size[: work.n_points]))
@@ -116,6 +123,12 @@ class Sizing:
 
     def update(self) -> float:
         """Exact sizes at new vertices, then the gradation; returns the smallest size."""
+        self._evaluate()
+        self._spread()
+        return self.smallest()
+
+    def _evaluate(self) -> None:
+        """Exact sizes at new vertices, as if none would spread."""
         work, refiner = self.refiner.work, self.refiner
         n = work.n_points
         new = slice(self.known, n)
@@ -129,14 +142,16 @@ class Sizing:
         refiner.size[new] = value
         self.known = n
         self._boundaries()
-        self._limit()
-        while smaller_of_both(self.refiner):
-            self._limit()
-        return self.smallest()
 
     def smallest(self) -> float:
         """The smallest size so far."""
         return float(self.refiner.size[: self.known].min())
+
+    def _spread(self) -> None:
+        """The gradation, on periodic sides alike."""
+        self._limit()
+        while smaller_of_both(self.refiner):
+            self._limit()
 
     def _limit(self) -> None:
         work = self.refiner.work

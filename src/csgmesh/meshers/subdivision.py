@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -43,6 +43,10 @@ class Subdivision:
     def is_whole(self) -> np.ndarray:
         """Which subsegments are whole segments, (k,) bool."""
         return (self.share[:, 0] == 0.0) & (self.share[:, 1] == 1.0)
+
+    def with_points(self, points: np.ndarray) -> Subdivision:
+        """The same with more points (k, 2) at the end, which lie on no segment."""
+        return replace(self, points=np.concatenate([self.points, points]))
 
     def cut(self, k: int, point: int, where: float) -> Subdivision:
         """Cut straight subsegment k at a point that lies on it, `where` of its way."""

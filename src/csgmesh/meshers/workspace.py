@@ -24,7 +24,14 @@ MOST_POINTS = 2**28
 
 
 def grown(array: np.ndarray, size: int) -> np.ndarray:
-    """The same flat array, longer: resized in place, which moves pages instead of copying."""
+    """The same flat array, longer: resized in place, which moves pages instead of copying.
+
+    Resizing fills the new part with zeros, so an array that grows by far is copied after all.
+    """
+    if size > 2 * len(array):
+        longer = np.empty(size, array.dtype)
+        longer[: len(array)] = array
+        return longer
     if array.base is not None:
         array = array.copy()
     array.resize(size, refcheck=False)
@@ -61,6 +68,8 @@ class Workspace:
         self.points = flat.reshape(-1, 2).take(self.order, axis=0).reshape(-1)
         self.n_points = n
         self.n_triangles = 0
+        #: Triangles from this one on are known to be good.
+        self.regular_from = 2**62
         half_edges = 4 * (2 * n + 8)
         self.origin = np.empty(half_edges, np.int32)
         self.twin = np.empty(half_edges, np.int32)

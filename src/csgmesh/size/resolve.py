@@ -39,6 +39,12 @@ class ResolvedSize:
             return self.default.value
         return None
 
+    @property
+    def constants(self) -> tuple[float, ...]:
+        """Edge lengths that hold over more than a point: those given as numbers."""
+        sources = [self.default, *(s for _, s in (*self.boundary, *self.region))]
+        return tuple(s.value for s in sources if isinstance(s, UniformSize))
+
 
 def resolve(size: Any, domain: Pslg) -> ResolvedSize | None:
     """Look up the names in a `size=` argument and check its values.
