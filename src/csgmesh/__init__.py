@@ -71,7 +71,7 @@ _HOME = {
     "csgmesh.io": ("from_meshio", "read", "to_meshio", "to_skfem", "write"),
     "csgmesh.measures": ("Certificate", "Quality", "quality"),
     "csgmesh.mesh": ("Mesh",),
-    "csgmesh.meshers": ("ConstrainedDelaunay", "DelaunayRefinement", "Structured"),
+    "csgmesh.meshers": ("ConstrainedDelaunay", "DelaunayRefinement", "QuadPairing", "Structured"),
     "csgmesh.pipeline": ("check", "generate"),
     "csgmesh.size": (
         "BackgroundSize",
@@ -126,6 +126,7 @@ __all__ = [
     "Polyhedron",
     "Primitive",
     "Pslg",
+    "QuadPairing",
     "Quality",
     "RegionSize",
     "Regions",
@@ -217,7 +218,7 @@ if TYPE_CHECKING:
     from csgmesh.measures.certificate import Certificate
     from csgmesh.measures.quality import Quality, quality
     from csgmesh.mesh import Mesh
-    from csgmesh.meshers import ConstrainedDelaunay, DelaunayRefinement, Structured
+    from csgmesh.meshers import ConstrainedDelaunay, DelaunayRefinement, QuadPairing, Structured
     from csgmesh.pipeline import check, generate
     from csgmesh.size import (
         BackgroundSize,

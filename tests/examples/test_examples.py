@@ -110,6 +110,14 @@ def test_periodic_cell(run):
     check_picture(folder / "periodic_cell.png")
 
 
+def test_quads(run):
+    printed, folder = run("quads")
+    worst, mean = map(float, re.search(r"SICN from (\S+), (\S+) on", printed).groups())
+    assert worst > 0.5
+    assert mean > 0.93
+    check_picture(folder / "quads.png")
+
+
 @pytest.mark.parametrize("path", sorted(EXAMPLES.glob("*.yaml")), ids=lambda path: path.stem)
 def test_domain_files(path):
     file = cm.load(path)

@@ -10,7 +10,6 @@ import importlib
 import sys
 import threading
 import warnings
-from functools import lru_cache
 from types import ModuleType
 from typing import Any
 
@@ -22,7 +21,6 @@ __all__ = ["cache_directory", "must_compile"]
 _HOME = {
     "insert_points": "delaunay",
     "curve_keys": "delaunay",
-    "insertion_order": "ordering",
     "recover_segments": "segments",
     "flood_regions": "segments",
     "block_around_points": "lattice",
@@ -48,6 +46,9 @@ _HOME = {
     "pair_half_edges": "improvement",
     "connect_block": "grids.blocks",
     "fill_block": "grids.blocks",
+    "pair_along_paths": "grids.pairing",
+    "pair_greedily": "grids.pairing",
+    "square_up": "grids.squares",
     "smooth_vertices": "improvement",
     "treat_triangles": "improvement",
     "lowest_sources": "sizes.sources",
@@ -72,9 +73,11 @@ def _load(name: str) -> ModuleType:
     """Import a kernel module, each of its callees first, into the directory of its own sources."""
     if f"{__name__}.{name}" in sys.modules:
         return sys.modules[f"{__name__}.{name}"]
+    import numba
+
     for callee in callees(name):
         _load(callee)
-    settings: Any = _numba().config
+    settings: Any = numba.config
     kept = settings.CACHE_DIR
     try:
         directory = cache_directory(name)
@@ -92,29 +95,6 @@ def _load(name: str) -> ModuleType:
         return importlib.import_module(f".{name}", __name__)
     finally:
         settings.CACHE_DIR = kept
-
-
-@lru_cache
-def _numba() -> ModuleType:
-    """numba, imported without scipy.linalg, which no kernel needs and which takes 0.1 s.
-
-    As numba is imported it asks whether scipy has a BLAS. It asks again whenever it compiles
-    something that calls one, so that the answer may wait.
-    """
-    import numba
-
-    try:
-        linalg: Any = importlib.import_module("numba.np.linalg")
-        ask = linalg.ensure_blas
-        linalg.ensure_blas = lambda: None
-        try:
-            arraymath: Any = importlib.import_module("numba.np.arraymath")
-            arraymath.ensure_blas = ask
-        finally:
-            linalg.ensure_blas = ask
-    except (ImportError, AttributeError):  # Another version of numba, which asks elsewhere.
-        pass
-    return numba
 
 
 def __getattr__(name: str) -> Any:

@@ -15,6 +15,8 @@ from csgmesh.spatial import Boxes
 #: a few tolerances.
 SAME_PARAMETER = 1e-6
 _SAME_PLACE = 8.0
+#: How many times its own length a segment is looked beyond for the ends of a facet.
+NEARBY = 2.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -106,13 +108,25 @@ def match_facets(domain: Pslg, ends: np.ndarray, tolerance: float) -> Matching:
     curve[chosen] = track.curve[segment[which]]
     interval[chosen], distance[chosen] = found[0][which], found[1][which]
     is_vertex[chosen] = found[2][which]
-    rest = np.flatnonzero(curve < 0)
-    if len(rest):
-        # A mesh of a finer or coarser outline may have facets that span vertices of this one.
+    # A mesh of a finer or coarser outline may have facets that span vertices of this one. They are
+    # looked for near the segment first: along hairpins a whole curve has too many near places.
+    for is_near in (True, False):
+        rest = np.flatnonzero(curve < 0)
+        if not len(rest):
+            break
         facet, segment = _holding(boxes, ends[rest, 0])
-        pairs = np.unique(np.stack([rest[facet], track.curve[segment]], axis=1), axis=0)
-        facet, on = pairs[:, 0], pairs[:, 1]
-        t, d = _within_curves(track, ends[facet], on)
+        facet = rest[facet]
+        if not is_near:
+            pairs = np.stack([facet, track.curve[segment], segment], axis=1)
+            first = np.unique(pairs[:, :2], axis=0, return_index=True)[1]
+            facet, segment = pairs[first, 0], pairs[first, 2]
+        on = track.curve[segment]
+        reach = track.extent[on].copy()
+        if is_near:
+            lo, hi = np.sort(track.interval[segment], axis=1).T
+            span = NEARBY * (hi - lo)
+            reach = np.clip(np.stack([lo - span, hi + span], axis=1), reach[:, :1], reach[:, 1:])
+        t, d = _within_curves(track, ends[facet], on, reach)
         good = np.flatnonzero((d <= tolerance).all(axis=1))
         chosen, which = _best(track, ends, facet[good], t[good], d[good], on[good])
         which = good[which]
@@ -174,12 +188,14 @@ def _within_segments(
     return t, d, is_vertex
 
 
-def _within_curves(track: Track, ends: np.ndarray, on: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Parameters and distances of facets' ends on whole curves.
+def _within_curves(
+    track: Track, ends: np.ndarray, on: np.ndarray, reach: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Parameters and distances of facets' ends on curves, within reach (k, 2) of the parameters.
 
     The two ends lie on both sides of the middle, which tells the two ends of a closed curve apart.
     """
-    lo, hi = track.extent[on].T
+    lo, hi = reach.T
     middle = _project_onto_halves(track, on, ends.mean(axis=1), lo, hi)
     options = []
     for first, second in (((lo, middle), (middle, hi)), ((middle, hi), (lo, middle))):

@@ -2,7 +2,8 @@
 
 from csgmesh.meshers.constrained_delaunay import ConstrainedDelaunay
 from csgmesh.meshers.delaunay_refinement import DelaunayRefinement
+from csgmesh.meshers.quad_pairing import QuadPairing
 from csgmesh.meshers.structured import Structured
 from csgmesh.meshers.worst import worst_cells
 
-__all__ = ["ConstrainedDelaunay", "DelaunayRefinement", "Structured", "worst_cells"]
+__all__ = ["ConstrainedDelaunay", "DelaunayRefinement", "QuadPairing", "Structured", "worst_cells"]

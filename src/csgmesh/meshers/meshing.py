@@ -20,6 +20,8 @@ from csgmesh.meshers.workspace import Progress, Workspace
 from csgmesh.size.resolve import ResolvedSize
 
 Lay = Callable[[Subdivision], Blocks | None]
+#: Adds points to a domain for an edge length, where sizes, if there are any yet, are that large.
+Seed = Callable[[Pslg, float, Background | None], Pslg]
 
 
 class Meshing:
@@ -36,8 +38,10 @@ class Meshing:
         corners: SharpCorners,
         limits: tuple[float, float, int],
         progress: Progress | None,
+        seed: Seed | None = None,
     ) -> None:
         self.domain = domain
+        self.seed = seed
         self.corners = corners
         self.min_angle, self.gradation, self.max_points = limits
         self.progress = progress
@@ -63,7 +67,11 @@ class Meshing:
     def uniform(self, size: float) -> bool:
         """Mesh with one size which no feature undercuts."""
         pieces = np.rint(self.domain.lengths() / size).astype(np.int64)
-        self.start(self._at_least(pieces), lay=lambda cut: lay_lattice(self.domain, cut, size))
+        if self.seed is not None:
+            self.domain = self.seed(self.domain, size, None)
+            self.start(self._at_least(pieces))
+        else:
+            self.start(self._at_least(pieces), lay=lambda cut: lay_lattice(self.domain, cut, size))
         self.prepare()
         self.refiner.set_uniform(size)
         return self.refiner.run()
@@ -81,7 +89,12 @@ class Meshing:
         pieces = self._at_least(np.rint(spacing.edges).astype(np.int64))
         spacing.even = pieces > np.maximum(np.rint(spacing.edges), 1)
         fixed = np.array(size.constants)
-        self.start(pieces, spacing, lambda cut: lay_bands(self.domain, cut, ground, fixed))
+        if self.seed is None:
+            self.start(pieces, spacing, lambda cut: lay_bands(self.domain, cut, ground, fixed))
+        else:
+            if size.uniform is not None:
+                self.domain = self.seed(self.domain, size.uniform, ground)
+            self.start(pieces, spacing)
         self.prepare()
         self.refiner.set_background(ground)
         if not self.refiner.run():
