@@ -42,7 +42,8 @@ def generate(
         How: `DelaunayRefinement` unless given.
     size : float, mapping, callable or SizeField, optional
         Wanted edge length in coordinate units: a number; a mapping of names of boundaries or
-        regions to numbers with ``"default"``; a callable ``h(points (n, 2)) -> (n,)``. Without it
+        regions to numbers with ``"default"``, where a name that a region and a boundary share means
+        both; a callable ``h(points (n, 2)) -> (n,)``. Without it
         curvature, feature size and gradation decide.
     deviation : float, optional
         Largest distance between a facet and its exact curve; see `evaluate`.
@@ -144,6 +145,10 @@ def _reference(mesh: Mesh, shape: Any) -> Pslg:
     """
     reference = evaluate(shape)
     known = mesh.domain
-    if known is None or (known.deviation, known.snap) == (reference.deviation, reference.snap):
+    if (
+        reference is shape
+        or known is None
+        or (known.deviation, known.snap) == (reference.deviation, reference.snap)
+    ):
         return reference
     return evaluate(shape, deviation=known.deviation or None, snap=known.snap or None)

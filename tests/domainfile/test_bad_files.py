@@ -167,6 +167,9 @@ BAD = {
     "size of z": (
         PLATE + 'mesh: {size: {default: "0.1 + z"}}\n', 3, 31, "as far as the domain has them",
     ),
+    "size of a coordinate in capitals": (
+        PLATE + 'mesh: {size: "0.1 + X"}\n', 3, 21, "'0.1 + X'; did you mean 'x'?",
+    ),
     "size unparsable": (PLATE + "mesh: {size: {default: 2 + }}\n", 3, 27, "expected a number"),
     "negative deviation": (PLATE + "mesh: {deviation: 0}\n", 3, 19, "positive number"),
     # output and expect

@@ -42,7 +42,10 @@ def test_every_mutation_is_caught(mesh, shape):
     missed = []
     for seed in range(N_MUTATIONS):
         mutation = MUTATIONS[seed % len(MUTATIONS)]
-        spoiled = mutation(np.random.default_rng(seed), mesh)
+        try:
+            spoiled = mutation(np.random.default_rng(seed), mesh)
+        except cm.InputError:  # caught by Mesh itself
+            continue
         if check(spoiled, reference).ok:
             missed.append(f"{mutation.__name__} with seed {seed}")
     assert not missed

@@ -115,8 +115,8 @@ def test_wrong_arguments_are_told():
     mesh = graded(100)
     with pytest.raises(InputError, match="one row a point of the mesh"):
         mesh.interpolate([1.0, 2.0], [[0, 0]])
-    with pytest.raises(InputError, match=r"points must have shape \(n, 2\); got \(2,\)"):
-        mesh.locate([0.0, 0.0])
+    with pytest.raises(InputError, match=r"points must have shape \(n, 2\); got \(4,\)"):
+        mesh.locate([0.0, 0.0, 0.0, 0.0])
     solid = Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], {"tetra": [[0, 1, 2, 3]]})
     with pytest.raises(InputError, match="dim 3"):
         solid.locate([[0, 0, 0]])
@@ -150,3 +150,11 @@ def test_no_points_and_no_numbers():
         mesh.locate("x")
     with pytest.raises(InputError, match="values must be numbers; got 'x'"):
         mesh.interpolate("x", [[0, 0]])
+
+
+def test_a_single_point_counts_as_one_row() -> None:
+    mesh = Mesh([[0, 0], [1, 0], [0, 1]], {"triangle": [[0, 1, 2]]})
+    assert mesh.locate((0.25, 0.25)).tolist() == [0]
+    assert mesh.interpolate([0, 1, 2], (0.25, 0.25)).tolist() == [0.75]
+    with pytest.raises(InputError, match=r"\(n, 2\).*\(3,\)"):
+        mesh.locate((0.25, 0.25, 0.0))

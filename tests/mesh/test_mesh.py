@@ -109,3 +109,12 @@ def test_repr_is_one_line():
         "<Mesh 2D: 6 points, 2 triangles, 1 quad, 7 facets, regions: rock, core, "
         "boundaries: a.left, a.bottom, b.right, a.top, b.top, seam, probe>"
     )
+
+
+@pytest.mark.parametrize("missing", [3, -1])
+def test_cells_and_facets_name_points_that_are_there(missing: int) -> None:
+    corners = [[0, 0], [1, 0], [0, 1]]
+    with pytest.raises(InputError, match=rf"points 0 to 2; row 1 is \(0, 1, {missing}\)"):
+        Mesh(corners, {"triangle": [[0, 1, 2], [0, 1, missing]]})
+    with pytest.raises(InputError, match=rf"facets\['line'\].*row 0 is \(0, {missing}\)"):
+        Mesh(corners, {"triangle": [[0, 1, 2]]}, facets={"line": [[0, missing]]})

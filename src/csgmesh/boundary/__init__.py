@@ -35,6 +35,8 @@ def evaluate(shape: Any, deviation: float | None = None, snap: float | None = No
 
     Raises
     ------
+    InputError
+        If `deviation` or `snap` is given with a Pslg or Plc, which is discretised already.
     ShapeError
         If a polygon crosses itself, an embedded point lies outside, or an argument is no positive
         number.
@@ -62,6 +64,12 @@ def evaluate(shape: Any, deviation: float | None = None, snap: float | None = No
         if value is not None and not _is_positive(value):
             raise ShapeError(f"{name} must be a positive, finite number; got {value!r}")
     if isinstance(shape, Pslg | Plc):
+        for name, value in (("deviation", deviation), ("snap", snap)):
+            if value is not None:
+                raise InputError(
+                    f"a {type(shape).__name__} is discretised already, so that {name} has no meaning for it; "
+                    f"{name}={value!r} given"
+                )
         return shape
     from csgmesh.boundary.planar import evaluate_plane
     from csgmesh.csg import Embed, Periodic, Regions, Shape

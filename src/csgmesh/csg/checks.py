@@ -125,6 +125,12 @@ def query_points(value: Any, dim: int) -> np.ndarray:
     return points
 
 
+def sequence(value: Any, what: str, where: str, rule: str) -> None:
+    """Something that can be gone through, and no text."""
+    if isinstance(value, str | bytes) or not hasattr(value, "__iter__"):
+        raise ShapeError(f"{where}: {what} must be {rule}; got {_shortened(value)}")
+
+
 def name(value: Any, where: str) -> str:
     """A usable name: dot-separated components, none empty, no glob characters, no quotes."""
     flaw = name_flaw(value)

@@ -85,6 +85,7 @@ def constant_or_size(
     """
     if any(axis in expression.names for axis in AXES):
         return ExpressionSize(expression, dim, parameters)
+    expression.require([*AXES[:dim], *parameters])
     value = expression.evaluate(parameters)
     if value <= 0:
         raise ExpressionError(f"a size must be positive, not {value:g}")

@@ -150,13 +150,11 @@ def _needed(path: Path, arrays: Mapping[str, np.ndarray], name: str) -> np.ndarr
 
 
 def _check(path: Path, mesh: Mesh) -> None:
-    """What `Mesh` does not check: that all numbers point at something."""
+    """What `Mesh` does not check: that markers and regions point at something."""
     n_curves = 0 if mesh.curves is None else len(mesh.curves)
     ranges = [
         ("point_marker", {"": mesh.point_marker}, -1, len(mesh.boundary_names)),
-        ("cells", mesh.cells, 0, mesh.n_points),
         ("cell_region", mesh.cell_region, 0, len(mesh.region_names)),
-        ("facets", mesh.facets, 0, mesh.n_points),
         ("facet_marker", mesh.facet_marker, -1, len(mesh.boundary_names)),
         ("facet_region", mesh.facet_region, -1, len(mesh.region_names)),
         ("facet_curve", mesh.facet_curve, -1, n_curves),

@@ -58,9 +58,9 @@ def point_array(value: ArrayLike) -> np.ndarray:
 
 
 def connectivity(
-    name: str, value: Mapping[str, Any], dims: tuple[int, ...]
+    name: str, value: Mapping[str, Any], dims: tuple[int, ...], n_points: int
 ) -> Mapping[str, np.ndarray]:
-    """Rows of point numbers by kind, each kind of one of the dimensions `dims`."""
+    """Rows of numbers of `n_points` points by kind, each kind of one of the dimensions `dims`."""
     if not isinstance(value, Mapping):
         raise InputError(f"{name} must map kinds to arrays; got {type(value).__name__}")
     arrays = {}
@@ -69,7 +69,14 @@ def connectivity(
             known = ", ".join(k for k, data in KINDS.items() if data.dim in dims)
             raise InputError(f"{name} must be of kinds {known}; got {kind!r}")
         width = KINDS[kind].n_points
-        arrays[kind] = frozen(f"{name}[{kind!r}]", rows, np.int64, (None, width))
+        array = frozen(f"{name}[{kind!r}]", rows, np.int64, (None, width))
+        if array.size and (array.min() < 0 or array.max() >= n_points):
+            row = int(((array < 0) | (array >= n_points)).any(axis=1).argmax())
+            raise InputError(
+                f"{name}[{kind!r}] must name points 0 to {n_points - 1}; "
+                f"row {row} is {tuple(array[row].tolist())}"
+            )
+        arrays[kind] = array
     return MappingProxyType(arrays)
 
 

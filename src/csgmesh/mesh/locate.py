@@ -199,6 +199,8 @@ def _queries(points: ArrayLike) -> np.ndarray:
         ) from None
     if queries.size == 0:
         return np.zeros((0, 2))
+    if queries.shape == (2,):
+        queries = queries.reshape(1, 2)
     if queries.ndim != 2 or queries.shape[1] != 2:
         raise InputError(f"points must have shape (n, 2); got {queries.shape}")
     return queries

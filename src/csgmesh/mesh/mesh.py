@@ -76,7 +76,8 @@ class Mesh:
     Raises
     ------
     InputError
-        If an array has the wrong shape or type, or a kind is unknown.
+        If an array has the wrong shape or type, a kind is unknown, or a cell or facet names a point
+        that is not there.
 
     Examples
     --------
@@ -107,8 +108,8 @@ class Mesh:
     def __post_init__(self) -> None:
         points = point_array(self.points)
         dim = points.shape[1]
-        cells = connectivity("cells", self.cells, tuple(range(2, dim + 1)))
-        facets = connectivity("facets", self.facets, (dim - 1,))
+        cells = connectivity("cells", self.cells, tuple(range(2, dim + 1)), len(points))
+        facets = connectivity("facets", self.facets, (dim - 1,), len(points))
         marker = self.point_marker
         if not np.size(marker):
             marker = np.full(len(points), -1)
@@ -307,7 +308,7 @@ class Mesh:
         Parameters
         ----------
         points : array_like (n, dim)
-            Where to look.
+            Where to look; a single point counts as one row.
 
         Returns
         -------
@@ -333,7 +334,7 @@ class Mesh:
         values : array_like (n_points,) or (n_points, k)
             A value, or a row of them, at each point of the mesh.
         points : array_like (m, dim)
-            Where to evaluate.
+            Where to evaluate; a single point counts as one row.
 
         Returns
         -------

@@ -10,7 +10,7 @@ import numpy as np
 
 from csgmesh.domain.input_angles import sharp_corners
 from csgmesh.domain.pslg import Pslg
-from csgmesh.errors import BudgetError, InputError
+from csgmesh.errors import BudgetError
 from csgmesh.improve import optimise
 from csgmesh.mesh import Mesh
 from csgmesh.meshers.assembly import assemble
@@ -19,7 +19,8 @@ from csgmesh.meshers.joining import join
 from csgmesh.meshers.meshing import Meshing
 from csgmesh.meshers.partwise import Partwise
 from csgmesh.meshers.side_by_side import cores
-from csgmesh.meshers.workspace import Progress
+from csgmesh.meshers.workspace import MOST_POINTS, Progress
+from csgmesh.options import check_flag, check_real, check_whole
 from csgmesh.size import resolve
 
 #: Beyond this no ordering of Delaunay refinement is known to end on most inputs.
@@ -102,19 +103,23 @@ class DelaunayRefinement:
     threads: int | None = None
 
     def __post_init__(self) -> None:
-        if not 0 <= self.min_angle <= LARGEST_MIN_ANGLE:
-            raise InputError(
-                f"min_angle must be between 0 and {LARGEST_MIN_ANGLE:g} degrees, beyond which "
-                f"Delaunay refinement does not end; got {self.min_angle!r}"
-            )
-        if not (self.gradation > 0 and np.isfinite(self.gradation)):
-            raise InputError(f"gradation must be positive and finite; got {self.gradation!r}")
-        if self.max_points < 3:
-            raise InputError(f"max_points must be at least 3; got {self.max_points!r}")
-        if not isinstance(self.improve, bool):
-            raise InputError(f"improve must be True or False; got {self.improve!r}")
-        if self.threads is not None and (isinstance(self.threads, bool) or self.threads < 1):
-            raise InputError(f"threads must be at least 1, or None; got {self.threads!r}")
+        angle_rule = (
+            f"between 0 and {LARGEST_MIN_ANGLE:g} degrees, beyond which Delaunay refinement does "
+            "not end"
+        )
+        checked = {
+            "min_angle": check_real(
+                "min_angle", self.min_angle, angle_rule, lambda x: 0 <= x <= LARGEST_MIN_ANGLE
+            ),
+            "gradation": check_real(
+                "gradation", self.gradation, "positive and finite", lambda x: 0 < x < np.inf
+            ),
+            "max_points": check_whole("max_points", self.max_points, 3),
+            "improve": check_flag("improve", self.improve),
+            "threads": None if self.threads is None else check_whole("threads", self.threads, 1),
+        }
+        for name, value in checked.items():
+            object.__setattr__(self, name, value)
 
     def generate(self, domain: Pslg, size: Any = None, progress: Progress | None = None) -> Mesh:
         """Mesh a domain.
@@ -143,7 +148,7 @@ class DelaunayRefinement:
             If the size is not positive and finite somewhere, or names nothing.
         """
         wanted = resolve(size, domain)
-        limits = self.min_angle, self.gradation, self.max_points
+        limits = self.min_angle, self.gradation, min(self.max_points, MOST_POINTS)
         parts = parts_of(domain, wanted, self.max_points, progress)
         if len(parts) > 1:
             together = Partwise(parts, wanted, limits, progress)

@@ -10,6 +10,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from csgmesh.errors import SizeError
+from csgmesh.options import as_real
+from csgmesh.tolerance import LARGEST, SMALLEST
 
 if TYPE_CHECKING:
     from csgmesh.domain.pslg import Pslg
@@ -101,9 +103,11 @@ def positive(value: object, what: str) -> float:
     >>> positive(2, "size of 'hole'")
     2.0
     """
-    if isinstance(value, bool) or not isinstance(value, (int, float, np.number)):
+    number = as_real(value)
+    if number is None:
         raise SizeError(f"{what} must be a number; got {value!r}")
-    number = float(value)
-    if not (np.isfinite(number) and number > 0):
+    if not 0 < number < np.inf:
         raise SizeError(f"{what} must be positive and finite; got {value!r}")
+    if not SMALLEST <= number <= LARGEST:
+        raise SizeError(f"{what} must be between {SMALLEST:g} and {LARGEST:g}; got {value!r}")
     return number

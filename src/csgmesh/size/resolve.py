@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import reprlib
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
@@ -11,6 +12,7 @@ import numpy as np
 from csgmesh.domain.names import find_names
 from csgmesh.domain.pslg import Pslg
 from csgmesh.errors import InputError, SizeError
+from csgmesh.options import as_real
 from csgmesh.size.field import SizeField, Source, UniformSize, positive
 
 
@@ -53,7 +55,8 @@ def resolve(size: Any, domain: Pslg) -> ResolvedSize | None:
     ----------
     size : None, float, mapping, callable or SizeField
         Wanted edge length: a number, names of boundaries and regions with numbers or callables and
-        ``"default"``, a callable of points (n, dim), or a `SizeField`.
+        ``"default"``, a callable of points (n, dim), or a `SizeField`. A name that a region and a
+        boundary share means both: the size holds in the region and on the boundary.
     domain : Pslg
         Whose names the mapping's keys are.
 
@@ -106,13 +109,11 @@ def evaluate(source: Source, points: np.ndarray) -> np.ndarray:
     """
     if not len(points):
         return np.empty(0)
-    value = np.asarray(source(points.copy()))
-    if value.dtype.kind not in "fiu":
-        raise SizeError(f"a size must return numbers; got {value.dtype} for {len(points)} points")
+    value = _numbers(source(points.copy()), points)
     if value.shape not in ((len(points),), ()):
         raise SizeError(
             f"a size must return one number per point, shape ({len(points)},); "
-            f"got shape {value.shape}"
+            f"got shape {value.shape} for {_first(points)}"
         )
     value = np.broadcast_to(value, len(points)).astype(float)
     wrong = np.flatnonzero(~(np.isfinite(value) & (value > 0)))
@@ -120,6 +121,29 @@ def evaluate(source: Source, points: np.ndarray) -> np.ndarray:
         where = ", ".join(f"{c:.6g}" for c in points[wrong[0]])
         raise SizeError(f"a size must be positive and finite; got {value[wrong[0]]:g} at ({where})")
     return value
+
+
+def _numbers(given: Any, points: np.ndarray) -> np.ndarray:
+    """What a callable returned as an array of numbers."""
+    try:
+        value = np.asarray(given)
+    except ValueError:  # lists of different lengths
+        value = np.asarray(None)
+    if value.dtype.kind == "O" and value.ndim:
+        numbers = [as_real(x) for x in value.ravel()]
+        if None not in numbers:
+            return np.array(numbers, float).reshape(value.shape)
+    if value.dtype.kind not in "fiu":
+        raise SizeError(
+            f"a size must return numbers; got {reprlib.repr(given)} for {_first(points)}"
+        )
+    return value
+
+
+def _first(points: np.ndarray) -> str:
+    """How many points a callable was given, and the first of them."""
+    where = ", ".join(f"{c:.6g}" for c in points[0])
+    return f"{len(points)} points, the first of them ({where})"
 
 
 def pointwise(size: Any, domain: Pslg) -> Source:
@@ -162,9 +186,9 @@ def pointwise(size: Any, domain: Pslg) -> Source:
 def _source(value: Any, what: str, domain: Pslg) -> Source:
     if isinstance(value, SizeField):
         return value.bind(domain)
-    if callable(value):
+    if callable(value) and not isinstance(value, type):
         return value
-    if isinstance(value, (str, bytes)) or value is None:
+    if isinstance(value, (str, bytes, type)) or value is None:
         raise SizeError(f"{what} must be a number or a callable; got {value!r}")
     return UniformSize(positive(value, what))
 

@@ -68,6 +68,7 @@ class Polygon(Planar):
     ) -> None:
         where = self.place(name)
         outer = _ring(points, "points", where)
+        checks.sequence(holes, "holes", where, "a sequence of rings, each of points")
         inner = tuple(_ring(hole, f"hole {k}", where) for k, hole in enumerate(holes))
         self._settle(name, points=outer, holes=inner)
 
