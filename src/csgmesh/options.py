@@ -83,7 +83,7 @@ def as_real(value: Any) -> float | None:
     try:
         return float(value)
     except OverflowError:
-        return float("inf") if value > 0 else float("-inf")
+        return float("inf") if value > 0 else float("-inf")  # type: ignore[operator]
 
 
 def check_real(option: str, value: object, rule: str, holds: Callable[[float], bool]) -> float:

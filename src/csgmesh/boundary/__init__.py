@@ -67,8 +67,8 @@ def evaluate(shape: Any, deviation: float | None = None, snap: float | None = No
         for name, value in (("deviation", deviation), ("snap", snap)):
             if value is not None:
                 raise InputError(
-                    f"a {type(shape).__name__} is discretised already, so that {name} has no meaning for it; "
-                    f"{name}={value!r} given"
+                    f"a {type(shape).__name__} is discretised already, so that {name} has no "
+                    f"meaning for it; {name}={value!r} given"
                 )
         return shape
     from csgmesh.boundary.planar import evaluate_plane
