@@ -188,5 +188,5 @@ def test_an_interruption_ends_all_threads(threads) -> None:
 
 
 def test_threads_are_counted_from_one() -> None:
-    with pytest.raises(InputError, match="threads must be at least 1, or None; got 0"):
+    with pytest.raises(InputError, match="threads must be a whole number, at least 1; got 0"):
         DelaunayRefinement(threads=0)
