@@ -76,8 +76,7 @@ class Mesh:
     Raises
     ------
     InputError
-        If an array has the wrong shape or type, a kind is unknown, or a cell or facet names a point
-        that is not there.
+        If a shape, type or kind is wrong, or a cell or facet names a point that is not there.
 
     Examples
     --------
