@@ -67,7 +67,7 @@ _HOME = {
         "SizeError",
         "UnboundedDomainError",
     ),
-    "csgmesh.improve": ("refine", "smooth"),
+    "csgmesh.improve": ("elevate", "refine", "smooth"),
     "csgmesh.io": ("from_meshio", "read", "to_meshio", "to_skfem", "write"),
     "csgmesh.measures": ("Certificate", "Quality", "quality"),
     "csgmesh.mesh": ("Mesh",),
@@ -145,6 +145,7 @@ __all__ = [
     "check",
     "difference",
     "draw",
+    "elevate",
     "evaluate",
     "from_meshio",
     "generate",
@@ -213,7 +214,7 @@ if TYPE_CHECKING:
         SizeError,
         UnboundedDomainError,
     )
-    from csgmesh.improve import refine, smooth
+    from csgmesh.improve import elevate, refine, smooth
     from csgmesh.io import from_meshio, read, to_meshio, to_skfem, write
     from csgmesh.measures.certificate import Certificate
     from csgmesh.measures.quality import Quality, quality

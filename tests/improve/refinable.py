@@ -65,3 +65,49 @@ def quads(n: int, noise: float = 0.0, triangles: bool = False) -> Mesh:
         facet_region={"line": np.tile([0, -1], (4 * n, 1))},
         boundary_names=[["bottom"], ["right"], ["top"], ["left"]],
     )
+
+
+def with_quads(name: str) -> Mesh:
+    """A mesh of the catalogue with pairs of its triangles joined to quads where they fit."""
+    mesh = mesh_of(name)
+    rows = mesh.cells["triangle"]
+    half_edges = {
+        (a, b): (t, k)
+        for t, r in enumerate(rows.tolist())
+        for k, (a, b) in enumerate(zip(r, r[1:] + r[:1], strict=True))
+    }
+    facets = {tuple(sorted(f)) for f in mesh.facets["line"].tolist()}
+    taken, found = set(), []
+    for (a, b), (t, k) in half_edges.items():
+        s, j = half_edges.get((b, a), (-1, 0))
+        if s < 0 or t in taken or s in taken or tuple(sorted((a, b))) in facets:
+            continue
+        quad = [a, int(rows[s, (j + 2) % 3]), b, int(rows[t, (k + 2) % 3])]
+        flat = Mesh(mesh.points, {"quad": [quad]})
+        if cm.quality(flat).scaled_jacobian[0] > 0.3:
+            taken |= {s, t}
+            found.append(quad)
+    rest = np.setdiff1d(np.arange(len(rows)), sorted(taken))
+    region = mesh.cell_region["triangle"]
+    owner = [half_edges[q[0], q[2]][0] for q in found]
+    fields = {
+        f: getattr(mesh, f)
+        for f in (
+            "facets",
+            "facet_marker",
+            "facet_region",
+            "facet_curve",
+            "facet_interval",
+            "boundary_names",
+            "region_names",
+            "curves",
+            "domain",
+            "point_marker",
+        )
+    }
+    return Mesh(
+        mesh.points,
+        {"triangle": rows[rest], "quad": found},
+        {"triangle": region[rest], "quad": region[owner]},
+        **fields,
+    )

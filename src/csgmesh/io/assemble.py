@@ -16,6 +16,7 @@ import numpy as np
 from csgmesh.errors import FileFormatError, InputError
 from csgmesh.io.sides import missing_edges, oriented_edges
 from csgmesh.mesh import KINDS, Mesh
+from csgmesh.mesh.lagrange import lattice
 
 #: Names of sides that the file does not name: outer ones, and those between two regions.
 OUTER, INNER = "boundary", "interface"
@@ -198,9 +199,11 @@ def _counterclockwise(points: np.ndarray, cells: dict[str, np.ndarray]) -> dict[
 
 def _mirrored(kind: str) -> list[int]:
     n = KINDS[kind].n_corners
-    corners = [0, *range(n - 1, 0, -1)]
-    middles = list(range(2 * n - 1, n - 1, -1)) if KINDS[kind].order == 2 else []
-    return [*corners, *middles, *range(2 * n, KINDS[kind].n_points)]
+    if kind == "quad8":
+        return [0, 3, 2, 1, 7, 6, 5, 4]
+    # The mirror image across the diagonal through corner 0 exchanges the two coordinates.
+    places = lattice(n, KINDS[kind].order).tolist()
+    return [places.index([j, i]) for i, j in places]
 
 
 def _facets(

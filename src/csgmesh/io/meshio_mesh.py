@@ -12,6 +12,8 @@ from csgmesh.errors import FileFormatError, InputError
 from csgmesh.io.assemble import Listing
 from csgmesh.io.members import members
 from csgmesh.mesh import KINDS, Mesh
+from csgmesh.mesh.lagrange import EQUISPACED
+from csgmesh.mesh.nodes import with_nodes
 
 if TYPE_CHECKING:
     import meshio
@@ -51,6 +53,7 @@ def to_meshio(mesh: Mesh) -> meshio.Mesh:
         raise InputError(f"to_meshio needs a Mesh, as generate returns; got {type(mesh).__name__}")
     import meshio
 
+    mesh = with_nodes(mesh, EQUISPACED)
     blocks = [*mesh.cells.items(), *mesh.facets.items()]
     regions = [np.array(r) for r in mesh.cell_region.values()]
     markers = [np.array(m) for m in mesh.facet_marker.values()]
@@ -77,7 +80,7 @@ def from_meshio(given: meshio.Mesh, path: Path | str = "the meshio mesh") -> Mes
     Parameters
     ----------
     given : meshio.Mesh
-        Triangles and quads, of order 1 or 2, with z = 0.
+        Triangles and quads, of order 1 to 5 with equispaced nodes, with z = 0.
     path : Path or str
         What errors call it.
 

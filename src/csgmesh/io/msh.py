@@ -29,6 +29,8 @@ from csgmesh.io.assemble import INNER, OUTER, Listing
 from csgmesh.io.msh_parse import FROM_GMSH, GMSH_TYPE, Entity, MshContent, is_version_4_1, parse
 from csgmesh.io.msh_periodic import links, pairs
 from csgmesh.mesh import KINDS, Mesh
+from csgmesh.mesh.lagrange import EQUISPACED
+from csgmesh.mesh.nodes import with_nodes
 
 _INT, _SIZE, _DOUBLE = "<i4", "<u8", "<f8"
 
@@ -37,6 +39,7 @@ Field = tuple[str, "np.ndarray | Sequence[float]"]
 
 def write(path: Path, mesh: Mesh, *, binary: bool = True) -> None:
     """Write a ``.msh`` file of version 4.1; text with ``binary=False``."""
+    mesh = with_nodes(mesh, EQUISPACED)
     groups = _Groups(mesh)
     with open(path, "wb") as file:
         sink: _Binary | _Text = _Binary(file) if binary else _Text(file)

@@ -28,6 +28,15 @@ GMSH_TYPE = {
     "tetra10": 11,
     "vertex": 15,
     "quad8": 16,
+    "triangle10": 21,
+    "triangle15": 23,
+    "triangle21": 25,
+    "line4": 26,
+    "line5": 27,
+    "line6": 28,
+    "quad16": 36,
+    "quad25": 37,
+    "quad36": 38,
 }
 
 #: Where Gmsh orders points differently: our point k is its point FROM_GMSH[kind][k].

@@ -48,9 +48,7 @@ def write(path: Path, mesh: Mesh, *, compress: bool = False) -> None:
     for name in (*_CELLS, *_FACETS):
         arrays.update({f"{name}.{k}": array for k, array in getattr(mesh, name).items()})
     for name in _LINEAGE:
-        by_kind = getattr(mesh, name)
-        if any((array >= 0).any() for array in by_kind.values()):
-            arrays.update({f"{name}.{k}": array for k, array in by_kind.items()})
+        arrays.update({f"{name}.{k}": array for k, array in getattr(mesh, name).items()})
     for k, pair in enumerate(mesh.periodic):
         arrays.update({f"periodic.{k}.{name}": getattr(pair, name) for name in _PAIR})
         arrays.update({f"periodic.{k}.facets.{kind}": rows for kind, rows in pair.facets.items()})

@@ -63,6 +63,7 @@ class DirectedEdges:
         turn = (left < 0) | ((right >= 0) & (right < left))
         rows = rows.copy()
         rows[turn, :2] = rows[turn, 1::-1]
+        rows[turn, 2:] = rows[turn, 2:][:, ::-1]
         region = np.stack([np.where(turn, right, left), np.where(turn, left, right)], axis=1)
         return rows, region, region[:, 0] >= 0
 

@@ -23,26 +23,12 @@ from numpy.typing import ArrayLike
 
 from csgmesh.errors import FileFormatError, InputError
 from csgmesh.io.assemble import Listing
+from csgmesh.io.vtk_kinds import VTK_TYPE, kind_of, vtk_order
 from csgmesh.io.vtu_parse import Grid, VtuFile
 from csgmesh.mesh import KINDS, Mesh
+from csgmesh.mesh.lagrange import EQUISPACED
+from csgmesh.mesh.nodes import with_nodes
 from csgmesh.options import check_choice
-
-#: VTK's numbers for the kinds of cells.
-VTK_TYPE = {
-    "vertex": 1,
-    "line": 3,
-    "triangle": 5,
-    "quad": 9,
-    "tetra": 10,
-    "hexahedron": 12,
-    "wedge": 13,
-    "pyramid": 14,
-    "line3": 21,
-    "triangle6": 22,
-    "quad8": 23,
-    "tetra10": 24,
-    "quad9": 28,
-}
 
 _TYPE_NAME = {"f8": "Float64", "f4": "Float32", "i8": "Int64", "i4": "Int32", "u1": "UInt8"}
 _BLOCK = 1 << 20
@@ -70,6 +56,7 @@ def write(
         (facets get NaN, or -1 where the values are integers).
     """
     check_choice("encoding", encoding, ("raw", "base64"), "a .vtu file")
+    mesh = with_nodes(mesh, EQUISPACED)
     grid = _Grid(mesh)
     appended = _Appended(bool(compress), encoding)
     points = np.zeros((mesh.n_points, 3))
@@ -109,17 +96,19 @@ def read(path: Path) -> Mesh:
     grid = file.grid()
     listing = Listing(path, grid.points)
     region_of, marker_of = listing.names_in(file.field_data())
-    kind_of = {number: kind for kind, number in VTK_TYPE.items()}
     starts = np.concatenate([[0], grid.offsets[:-1]]) if len(grid.offsets) else grid.offsets
-    for number in dict.fromkeys(grid.types.tolist()):
-        if number not in kind_of:
+    widths = grid.offsets - starts
+    for number, width in dict.fromkeys(zip(grid.types.tolist(), widths.tolist(), strict=True)):
+        kind = kind_of(number, width)
+        if kind is None:
             raise FileFormatError(f"{path}: cells of VTK type {number}, which are not supported")
-        kind = kind_of[number]
-        which = np.flatnonzero(grid.types == number)
-        width = KINDS[kind].n_points
-        if (grid.offsets[which] - starts[which] != width).any():
+        if KINDS[kind].n_points != width:
             raise FileFormatError(f"{path}: offsets do not fit cells of kind {kind!r}")
+        which = np.flatnonzero((grid.types == number) & (widths == width))
         rows = grid.connectivity[starts[which][:, None] + np.arange(width)]
+        order = vtk_order(kind)
+        if order is not None:
+            rows = rows[:, np.argsort(order)]
         if KINDS[kind].dim >= 2:
             tags = _numbers(grid, "region", which, region_of, listing.region_number)
         else:
@@ -157,7 +146,11 @@ class _Grid:
         return np.concatenate([values, rest])
 
     def connectivity(self) -> np.ndarray:
-        return np.concatenate([*(rows.ravel() for _, rows in self.blocks), np.zeros(0, np.int64)])
+        parts = []
+        for kind, rows in self.blocks:
+            order = vtk_order(kind)
+            parts.append((rows if order is None else rows[:, order]).ravel())
+        return np.concatenate([*parts, np.zeros(0, np.int64)])
 
     def offsets(self) -> np.ndarray:
         widths = [np.full(len(rows), rows.shape[1]) for _, rows in self.blocks]

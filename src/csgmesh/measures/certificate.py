@@ -11,8 +11,14 @@ from csgmesh.errors import InputError
 from csgmesh.measures.results import Certificate, Check, Failure
 from csgmesh.measures.rules.amounts import check_area, check_samples
 from csgmesh.measures.rules.arrays import check_indices, check_points
+from csgmesh.measures.rules.bends import check_edge_nodes
 from csgmesh.measures.rules.case import Case
-from csgmesh.measures.rules.cells import check_angles, check_delaunay, check_orientation
+from csgmesh.measures.rules.cells import (
+    check_angles,
+    check_delaunay,
+    check_jacobian,
+    check_orientation,
+)
 from csgmesh.measures.rules.complexes import (
     check_conforming,
     check_facets,
@@ -43,12 +49,14 @@ RULES: tuple[tuple[str, Callable[[Case], Check]], ...] = (
     ("indices", check_indices),
     ("points", check_points),
     ("orientation", check_orientation),
+    ("Jacobian", check_jacobian),
     ("conforming", check_conforming),
     ("facets", check_facets),
     ("overlap", check_overlap),
     ("components and holes", check_topology),
     ("on curves", check_on_curves),
     ("deviation", check_deviation),
+    ("edge nodes", check_edge_nodes),
     ("intervals", check_intervals),
     ("coverage", check_coverage),
     ("names", check_names),
@@ -78,7 +86,8 @@ def check(
     against the domain that it remembers; without that either (a mesh read from a file), what can
     be checked is checked and the certificate says what could not be.
 
-    Cells with mid-side points are checked by their corners.
+    How cells fit together, sizes of angles and samples are checked by the corners of curved cells;
+    their Jacobian, area and boundary nodes as curved as they are.
 
     Parameters
     ----------

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
 from csgmesh.errors import InputError
+from csgmesh.measures.jacobians import curved_areas, jacobian_bounds
 from csgmesh.measures.shapes import CellMeasures, measure_cells
 from csgmesh.mesh import KINDS, Mesh
+from csgmesh.mesh.nodes import node_family
 
 _BAR = 40
 
@@ -17,8 +19,8 @@ _BAR = 40
 class Quality:
     """Measures of each cell of a plane mesh, and their extremes.
 
-    Arrays have an entry a cell, counted through all kinds in the order of ``mesh.cells``. Cells
-    with mid-side points are measured by their corners. A printed Quality is a table with a
+    Arrays have an entry a cell, counted through all kinds in the order of ``mesh.cells``. Angles
+    and edges of curved cells are measured by their corners. A printed Quality is a table with a
     histogram of the angles.
 
     Attributes
@@ -27,14 +29,16 @@ class Quality:
         Smallest and largest inner angle of each cell, degrees.
     scaled_jacobian : (n_cells,) float64
         Of quads: the smallest over the corners of ``det / (|a| |b|)``, with a and b the edges
-        there; 1 for a rectangle, below 0 where the quad is not convex. NaN for triangles.
+        there; 1 for a rectangle, below 0 where the quad is not convex. NaN for triangles. Of curved
+        cells: a lower bound on the Jacobian across the cell, over an upper one (Persson and Peraire
+        2009); 1 where it is constant, below 0 where the cell may be turned over.
     sicn : (n_cells,) float64
         Of quads: the smallest over the corners of ``2 det / (a² + b²)``, the signed inverse
         condition number; 1 for a square. NaN for triangles.
     min_edge, max_edge : (n_cells,) float64
         Shortest and longest edge of each cell.
     area : (n_cells,) float64
-        Signed area of each cell.
+        Signed area of each cell; exact for curved ones too.
     n_points, n_cells : int
     n_by_kind : dict of str to int
         Number of cells of each kind.
@@ -147,13 +151,26 @@ def quality(mesh: Mesh) -> Quality:
         raise InputError(f"quality measures plane meshes; this one has dim {mesh.dim}")
     parts = []
     for kind, rows in mesh.cells.items():
-        parts.append(measure_cells(mesh.points, rows[:, : KINDS[kind].n_corners]))
+        measures = measure_cells(mesh.points, rows[:, : KINDS[kind].n_corners])
+        if KINDS[kind].order > 1:
+            measures = _of_curved(mesh, kind, measures)
+        parts.append(measures)
     joined = {
         f.name: np.concatenate([np.zeros(0), *(getattr(part, f.name) for part in parts)])
         for f in fields(CellMeasures)
     }
     counts = {kind: len(rows) for kind, rows in mesh.cells.items()}
     return Quality(**joined, n_points=mesh.n_points, n_cells=mesh.n_cells, n_by_kind=counts)
+
+
+def _of_curved(mesh: Mesh, kind: str, straight: CellMeasures) -> CellMeasures:
+    """Area and scaled Jacobian of curved cells in place of those of their straight counterparts."""
+    if kind == "quad8":
+        return straight
+    nodes, family = mesh.points[mesh.cells[kind]], node_family(mesh)
+    area = curved_areas(nodes, kind, family)
+    ratio = jacobian_bounds(nodes, kind, family).ratio
+    return replace(straight, area=area, scaled_jacobian=ratio)
 
 
 def _histogram(values: np.ndarray, lo: float, hi: float, n_bins: int) -> list[str]:

@@ -104,7 +104,15 @@ def by_kind(
     return MappingProxyType(arrays)
 
 
-def names_of_markers(value: Iterable[Iterable[str]]) -> tuple[tuple[str, ...], ...]:
+def lineage(
+    given: Mapping[str, Mapping[str, Any]], cells: Mapping[str, np.ndarray]
+) -> dict[str, Mapping[str, np.ndarray]]:
+    """Fields that only refined meshes have: an integer a cell, or empty."""
+    empty: Mapping[str, np.ndarray] = MappingProxyType({})
+    return {n: by_kind(n, v, cells, (), -1) if v else empty for n, v in given.items()}
+
+
+def marker_names(value: Iterable[Iterable[str]]) -> tuple[tuple[str, ...], ...]:
     """A tuple of names a marker."""
     entries = tuple(value)
     for i, entry in enumerate(entries):

@@ -44,7 +44,11 @@ class Kind:
 
     @property
     def order(self) -> int:
-        """1 for straight cells, 2 for cells with mid-side points."""
+        """Degree of the polynomials along the edges; 1 for straight cells."""
+        if self.dim == 2:
+            return len(self.facets[0]) - 1
+        if self.dim == 1:
+            return self.n_points - 1
         return 1 if self.n_points == self.n_corners else 2
 
 
@@ -68,12 +72,22 @@ _HEXAHEDRON_FACETS = (
 _WEDGE_FACETS = ((0, 2, 1), (3, 4, 5), (0, 1, 4, 3), (1, 2, 5, 4), (2, 0, 3, 5))
 _PYRAMID_FACETS = ((0, 3, 2, 1), (0, 1, 4), (1, 2, 4), (2, 3, 4), (3, 0, 4))
 
-_TRIANGLE6_FACETS = ((0, 1, 3), (1, 2, 4), (2, 0, 5))
 _QUAD8_FACETS = ((0, 1, 4), (1, 2, 5), (2, 3, 6), (3, 0, 7))
 _TETRA10_FACETS = (
     *((0, 2, 1, 6, 5, 4), (0, 1, 3, 4, 8, 7)),
     *((1, 2, 3, 5, 9, 8), (0, 3, 2, 7, 9, 6)),
 )
+
+
+def _of_order(corners: int, order: int) -> Kind:
+    """A plane cell of higher order: corners, then the inner points of each edge along it, then
+    those of the cell, which in turn are those of a cell of lower order (as in Gmsh)."""
+    n_points = (order + 1) * (order + 2) // 2 if corners == 3 else (order + 1) ** 2
+    edges: tuple[tuple[int, ...], ...] = _TRIANGLE if corners == 3 else _QUAD
+    inner = [tuple(corners + e * (order - 1) + k for k in range(order - 1)) for e in range(corners)]
+    facets = tuple((*edge, *inner[e]) for e, edge in enumerate(edges))
+    name = f"{'triangle' if corners == 3 else 'quad'}{n_points}"
+    return Kind(name, 2, n_points, corners, edges, facets, (f"line{order + 1}",) * corners)
 
 
 def _table() -> dict[str, Kind]:
@@ -87,10 +101,12 @@ def _table() -> dict[str, Kind]:
         Kind("wedge", 3, 6, 6, _WEDGE, _WEDGE_FACETS, ("triangle",) * 2 + ("quad",) * 3),
         Kind("pyramid", 3, 5, 5, _PYRAMID, _PYRAMID_FACETS, ("quad",) + ("triangle",) * 4),
         Kind("line3", 1, 3, 2, _LINE, ((0,), (1,)), ("vertex",) * 2),
-        Kind("triangle6", 2, 6, 3, _TRIANGLE, _TRIANGLE6_FACETS, ("line3",) * 3),
+        _of_order(3, 2),
         Kind("quad8", 2, 8, 4, _QUAD, _QUAD8_FACETS, ("line3",) * 4),
-        Kind("quad9", 2, 9, 4, _QUAD, _QUAD8_FACETS, ("line3",) * 4),
+        _of_order(4, 2),
         Kind("tetra10", 3, 10, 4, _TETRA, _TETRA10_FACETS, ("triangle6",) * 4),
+        *(Kind(f"line{n}", 1, n, 2, _LINE, ((0,), (1,)), ("vertex",) * 2) for n in (4, 5, 6)),
+        *(_of_order(corners, order) for corners in (3, 4) for order in (3, 4, 5)),
     )
     return {kind.name: kind for kind in kinds}
 

@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike
 from csgmesh.errors import InputError
 from csgmesh.mesh.blocks import Block, frozen_blocks
 from csgmesh.mesh.description import counted, listed, same
-from csgmesh.mesh.fields import by_kind, connectivity, frozen, names_of_markers, point_array
+from csgmesh.mesh.fields import by_kind, connectivity, frozen, lineage, marker_names, point_array
 from csgmesh.mesh.periodic import PeriodicPair, representatives
 
 if TYPE_CHECKING:
@@ -61,11 +61,9 @@ class Mesh:
     domain : Pslg, optional
         What was meshed; None for a mesh read from a file.
     cell_parent : mapping of str to array_like (m,), optional
-        For a refined mesh the cell of the coarser one that each cell is a part of, counted through
-        all kinds; -1 for none.
+        Of refined meshes: the cell of the coarser one, counted through all kinds.
     cell_green : mapping of str to array_like (m,), optional
-        Cells with the same number are a green closure, undone before the next refinement; -1 for
-        all others.
+        Cells of one green closure, undone before the next refinement, share a number; others -1.
     periodic : sequence of PeriodicPair, optional
         Sides whose points and facets match; see `csgmesh.Periodic`.
     info : mapping, optional
@@ -116,12 +114,11 @@ class Mesh:
             "points": points,
             "cells": cells,
             "cell_region": by_kind("cell_region", self.cell_region, cells, (), 0),
-            "cell_parent": by_kind("cell_parent", self.cell_parent, cells, (), -1),
-            "cell_green": by_kind("cell_green", self.cell_green, cells, (), -1),
+            **lineage({"cell_parent": self.cell_parent, "cell_green": self.cell_green}, cells),
             "region_names": tuple(str(name) for name in self.region_names),
             "facets": facets,
             "facet_marker": by_kind("facet_marker", self.facet_marker, facets, (), -1),
-            "boundary_names": names_of_markers(self.boundary_names),
+            "boundary_names": marker_names(self.boundary_names),
             "facet_region": by_kind("facet_region", self.facet_region, facets, (2,), -1),
             "facet_curve": by_kind("facet_curve", self.facet_curve, facets, (), -1),
             "facet_interval": by_kind("facet_interval", self.facet_interval, facets, (2,), 0.0),

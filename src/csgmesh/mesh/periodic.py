@@ -124,3 +124,27 @@ def halved_pairs(pairs: tuple[PeriodicPair, ...], middle: np.ndarray) -> tuple[P
         lines = np.vstack([facets, behind])[order]
         made.append(PeriodicPair(pair.names, pair.matrix, pair.offset, points, {"line": lines}))
     return tuple(made)
+
+
+def elevated_pairs(
+    pairs: tuple[PeriodicPair, ...], kind: str, facets: np.ndarray
+) -> tuple[PeriodicPair, ...]:
+    """The pairs of a mesh whose line facets became curved ones.
+
+    Parameters
+    ----------
+    pairs : tuple of PeriodicPair
+        Of the mesh before.
+    kind : str
+        What the facets became.
+    facets : (f, k) int64
+        Their points: ends first, then what lies between, in the order of the lines.
+    """
+    made = []
+    for pair in pairs:
+        rows = pair.facets["line"]
+        # The second facet runs against the first.
+        inner = [facets[rows[:, 0], 2:].ravel(), facets[rows[:, 1], 2:][:, ::-1].ravel()]
+        points = np.vstack([pair.points, np.column_stack(inner)])
+        made.append(PeriodicPair(pair.names, pair.matrix, pair.offset, points, {kind: rows}))
+    return tuple(made)

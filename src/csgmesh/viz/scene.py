@@ -10,17 +10,15 @@ import numpy as np
 from csgmesh.domain.curves import LINE
 from csgmesh.domain.pslg import Pslg
 from csgmesh.mesh import KINDS, Mesh
+from csgmesh.mesh.lagrange import basis
+from csgmesh.mesh.nodes import node_family
 
 #: Straight pieces drawn for each segment of a curve: segments are already near their curve, so a
 #: few are enough for the eye.
 _PIECES = 6
 
-#: Polygons are outlined through the points of a cell in this order.
-_RING = {
-    "triangle6": [0, 3, 1, 4, 2, 5],
-    "quad8": [0, 4, 1, 5, 2, 6, 3, 7],
-    "quad9": [0, 4, 1, 5, 2, 6, 3, 7],
-}
+#: And for each edge of a curved cell, which may turn by 50 degrees.
+_BENT_PIECES = 12
 
 
 @dataclass(frozen=True)
@@ -59,16 +57,14 @@ class Scene:
 
 
 def mesh_scene(mesh: Mesh) -> Scene:
-    """Scene of a plane mesh: its facets are drawn as they are, not as the curves they stand for."""
+    """Scene of a plane mesh: facets are drawn as they are, not as the curves they stand for."""
     is_marked = mesh.point_marker >= 0
     cells = []
-    for kind, rows in mesh.cells.items():
-        ring = _RING.get(kind, list(range(KINDS[kind].n_corners)))
-        cells.append((mesh.points[rows[:, ring]], mesh.cell_region[kind]))
+    for kind in mesh.cells:
+        cells.append((_outlines(mesh, kind), mesh.cell_region[kind]))
     lines = []
     for kind, rows in mesh.facets.items():
-        order = [0, 2, 1] if kind == "line3" else [0, 1]
-        lines.append((mesh.points[rows[:, order]], mesh.facet_marker[kind]))
+        lines.append((_edge(mesh, kind, rows), mesh.facet_marker[kind]))
     counts = [_count(len(rows), kind) for kind, rows in mesh.cells.items() if len(rows)]
     return Scene(
         *_box(mesh.points),
@@ -80,6 +76,24 @@ def mesh_scene(mesh: Mesh) -> Scene:
         points=mesh.points[is_marked],
         point_marker=mesh.point_marker[is_marked],
     )
+
+
+def _outlines(mesh: Mesh, kind: str) -> np.ndarray:
+    """Polygons around cells of a kind, (m, k, 2), through the points of bent edges."""
+    rows, data = mesh.cells[kind], KINDS[kind]
+    if data.order == 1:
+        return mesh.points[rows]
+    edges = [_edge(mesh, data.facet_kinds[0], rows[:, list(edge)]) for edge in data.facets]
+    return np.concatenate([edge[:, :-1] for edge in edges], axis=1)
+
+
+def _edge(mesh: Mesh, kind: str, rows: np.ndarray) -> np.ndarray:
+    """Polylines along edges, (m, k, 2)."""
+    if KINDS[kind].order == 1:
+        return mesh.points[rows]
+    places = np.linspace(0.0, 1.0, _BENT_PIECES + 1)[:, None]
+    lines: np.ndarray = basis(kind, node_family(mesh), places) @ mesh.points[rows]
+    return lines
 
 
 def pslg_scene(domain: Pslg, *, vertices: bool) -> Scene:

@@ -1,5 +1,5 @@
 """From a mesh to a finer one: cells divided by templates, conforming, names inherited."""
 
-from csgmesh.improve.refinement.refining import refine
+from csgmesh.improve.refinement.refining import halve_edges, refine
 
-__all__ = ["refine"]
+__all__ = ["halve_edges", "refine"]

@@ -64,7 +64,7 @@ def undo_green(mesh: Mesh) -> tuple[dict[str, Block], np.ndarray]:
     before = 0
     for kind, rows in mesh.cells.items():
         number = before + np.arange(len(rows))
-        region, green = mesh.cell_region[kind], mesh.cell_green[kind]
+        region, green = mesh.cell_region[kind], mesh.cell_green.get(kind, np.zeros(0, np.int64))
         stays = np.ones(len(rows), bool)
         for size in (2, 3, 4) if kind == "triangle" else (2,):
             children = _families(green, size)
@@ -75,7 +75,7 @@ def undo_green(mesh: Mesh) -> tuple[dict[str, Block], np.ndarray]:
         if not stays.all():
             rows, region, number = rows[stays], region[stays], number[stays]
         parts[kind].append(Block(rows, region, number, None))
-        before += len(green)
+        before += len(stays)
     for kind, block, _ in parents:
         if len(block.rows):
             parts[kind].append(block)

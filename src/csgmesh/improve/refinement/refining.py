@@ -113,6 +113,22 @@ def refine(mesh: Mesh, cells: Any = None, method: str = "red-green") -> Mesh:
     return division.finished()
 
 
+def halve_edges(mesh: Mesh, pairs: np.ndarray) -> Mesh:
+    """Halve some edges of a mesh of triangles, quads or both, and what conformity asks for.
+
+    A triangle with one halved edge is cut into two there, for good; see `refine` for the rest.
+
+    Parameters
+    ----------
+    mesh : Mesh
+    pairs : (k, 2) int64
+        Ends of the edges.
+    """
+    division = _Division.of(replace(mesh, cell_green={}), "red-green")
+    division.mark_edges(pairs)
+    return replace(division.finished(), cell_green={})
+
+
 def _check_kinds(mesh: Mesh, method: str) -> None:
     known = ("triangle", "quad") if method == "red-green" else ("triangle",)
     others = [kind for kind in mesh.cells if kind not in known]
@@ -165,10 +181,18 @@ class _Division:
             self.halved[edges.edge[np.repeat(chosen, np.diff(edges.begin))]] = 1
         watch = self._hanging()
         if marked is not None or watch is not None:
-            limit = [np.full(len(b.rows), b.rows.shape[1] - 1) for b in self.blocks.values()]
-            edges.spread(self.halved, np.concatenate(limit), self.reference, watch)
-            while self._halve_partners():
-                edges.spread(self.halved, np.concatenate(limit), self.reference, watch)
+            self._spread(watch)
+
+    def mark_edges(self, pairs: np.ndarray) -> None:
+        """Halve these edges, and others as conformity asks."""
+        self.halved[self.edges.find(pairs)] = 1
+        self._spread(None)
+
+    def _spread(self, watch: np.ndarray | None) -> None:
+        limit = [np.full(len(b.rows), b.rows.shape[1] - 1) for b in self.blocks.values()]
+        self.edges.spread(self.halved, np.concatenate(limit), self.reference, watch)
+        while self._halve_partners():
+            self.edges.spread(self.halved, np.concatenate(limit), self.reference, watch)
 
     def _halve_partners(self) -> bool:
         """Halve the partners of halved facets on periodic sides; whether there were any."""

@@ -58,6 +58,16 @@ class Case:
         return np.concatenate([np.zeros((0, 2), np.int64), *rows])
 
     @cached_property
+    def facet_nodes(self) -> list[tuple[str, np.ndarray, np.ndarray]]:
+        """Kind, numbers and coordinates (k, n, 2) of the facets that are curved."""
+        found, before = [], 0
+        for kind, rows in self.mesh.facets.items():
+            if KINDS[kind].order > 1:
+                found.append((kind, before + np.arange(len(rows)), self.mesh.points[rows]))
+            before += len(rows)
+        return found
+
+    @cached_property
     def facet_edge(self) -> np.ndarray:
         """Edge that each facet is, -1 for none, (f,)."""
         return self.edges.find(self.facets)

@@ -7,6 +7,7 @@ import numpy as np
 from csgmesh.domain.input_angles import ANGLE_ROUNDING, input_angles
 from csgmesh.measures.results import Check, offenders
 from csgmesh.measures.rules.case import Case
+from csgmesh.mesh import KINDS
 from csgmesh.mesh.orientation import orientations
 from csgmesh.spatial import Boxes
 from csgmesh.tolerance import EXCUSED_ANGLE, coordinate_ulp
@@ -26,10 +27,31 @@ def check_orientation(case: Case) -> Check:
         before += len(rows)
     numbers = np.concatenate(bad)
     what = "is|are not counterclockwise"
-    if set(case.corners) - {"triangle", "triangle6"}:
+    if _has_quads(case):
         what += " and convex"
     failures = offenders(rule, "cell", numbers, case.cell_places(numbers), what)
     return Check.of(rule, before, failures)
+
+
+def check_jacobian(case: Case) -> Check:
+    """The Jacobian of curved cells is positive everywhere, by its Bernstein coefficients."""
+    rule, mesh = "Jacobian", case.mesh
+    curved = [KINDS[kind].order > 1 and kind != "quad8" for kind in mesh.cells]
+    widths = [len(rows) for rows in mesh.cells.values()]
+    is_curved = np.repeat(curved, widths).astype(bool)
+    if not is_curved.any():
+        return Check.skipped(rule, "no curved cells")
+    ratio = case.quality.scaled_jacobian
+    bad = np.flatnonzero(is_curved & ~(ratio > 0))
+    failures = offenders(
+        rule, "cell", bad, case.cell_places(bad), "is|are turned over where the cell is bent"
+    )
+    note = f"smallest over largest {ratio[is_curved].min():.3g}"
+    return Check.of(rule, int(is_curved.sum()), failures, note)
+
+
+def _has_quads(case: Case) -> bool:
+    return any(rows.shape[1] == 4 for rows in case.corners.values())
 
 
 def check_angles(case: Case) -> Check:
@@ -86,7 +108,7 @@ def excused_cells(case: Case, cells: np.ndarray) -> np.ndarray:
 def check_delaunay(case: Case) -> Check:
     """How many edges are not Delaunay, facets apart. Says so, never fails."""
     rule = "Delaunay"
-    if set(case.corners) - {"triangle", "triangle6"}:
+    if _has_quads(case):
         return Check.skipped(rule, "only of triangles")
     edges, points = case.edges, case.mesh.points
     rows = np.concatenate([np.zeros((0, 3), np.int64), *case.corners.values()])
