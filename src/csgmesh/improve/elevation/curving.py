@@ -132,7 +132,9 @@ class Curving:
             middles = self._inner_numbers(rows, np.roll(rows, -1, axis=1), edge)
             own = KINDS[kind].n_points - rows.shape[1] * self.order
             inside = first + np.arange(len(rows) * own).reshape(len(rows), own)
-            cells[kind] = np.hstack([rows, middles.reshape(len(rows), rows.shape[1] * n_inner), inside])
+            cells[kind] = np.hstack(
+                [rows, middles.reshape(len(rows), rows.shape[1] * n_inner), inside]
+            )
             nodes = self.nodes(kind, rows, edge)
             points.append(nodes[:, nodes.shape[1] - own :].reshape(-1, 2))
             first += len(rows) * own

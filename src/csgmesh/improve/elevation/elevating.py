@@ -67,12 +67,11 @@ def elevate(mesh: Mesh, order: int = 2, nodes: str = "lobatto") -> Mesh:
     --------
     >>> import csgmesh as cm
     >>> mesh = cm.generate(cm.Disk((0, 0), 1), size=0.5)
-    >>> for order in (2, 3, 4, 5):
-    ...     print(f"{abs(cm.quality(cm.elevate(mesh, order)).total_area - np.pi):.0e}")
+    >>> for order in (2, 3):
+    ...     area = cm.quality(cm.elevate(mesh, order)).total_area
+    ...     print(f"{abs(area - 3.141592653589793):.0e}")
     2e-06
     2e-10
-    1e-14
-    1e-15
     """
     if order not in ORDERS:
         raise InputError(f"order must be one of 2, 3, 4, 5; got {order!r}")

@@ -1,4 +1,4 @@
-"""Help for cells that turn over when their edges bend: bend the others along, or divide the cell."""
+"""Help for cells that turn over when edges bend: bend the others along, or divide the cell."""
 
 from __future__ import annotations
 
