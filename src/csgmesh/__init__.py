@@ -71,7 +71,13 @@ _HOME = {
     "csgmesh.io": ("from_meshio", "read", "to_meshio", "to_skfem", "write"),
     "csgmesh.measures": ("Certificate", "Quality", "quality"),
     "csgmesh.mesh": ("Mesh",),
-    "csgmesh.meshers": ("ConstrainedDelaunay", "DelaunayRefinement", "QuadPairing", "Structured"),
+    "csgmesh.meshers": (
+        "ConstrainedDelaunay",
+        "DelaunayRefinement",
+        "QuadPairing",
+        "Quadtree",
+        "Structured",
+    ),
     "csgmesh.pipeline": ("check", "generate"),
     "csgmesh.size": (
         "BackgroundSize",
@@ -127,6 +133,7 @@ __all__ = [
     "Primitive",
     "Pslg",
     "QuadPairing",
+    "Quadtree",
     "Quality",
     "RegionSize",
     "Regions",
@@ -219,7 +226,13 @@ if TYPE_CHECKING:
     from csgmesh.measures.certificate import Certificate
     from csgmesh.measures.quality import Quality, quality
     from csgmesh.mesh import Mesh
-    from csgmesh.meshers import ConstrainedDelaunay, DelaunayRefinement, QuadPairing, Structured
+    from csgmesh.meshers import (
+        ConstrainedDelaunay,
+        DelaunayRefinement,
+        QuadPairing,
+        Quadtree,
+        Structured,
+    )
     from csgmesh.pipeline import check, generate
     from csgmesh.size import (
         BackgroundSize,

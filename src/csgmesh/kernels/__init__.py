@@ -63,6 +63,21 @@ _HOME = {
     "cell_qualities": "star_smoothing.moves",
     "gather_stars": "star_smoothing.moves",
     "move_vertices": "star_smoothing.moves",
+    "split_leaves": "tree.leaves",
+    "mark_unbalanced": "tree.leaves",
+    "places": "tree.leaves",
+    "find_leaves": "tree.leaves",
+    "adjoining": "tree.leaves",
+    "hand_down": "tree.features",
+    "mark_features": "tree.features",
+    "pair_pieces": "tree.features",
+    "mark_vertices": "tree.templates",
+    "drop_near": "tree.templates",
+    "count_cells": "tree.templates",
+    "number_vertices": "tree.templates",
+    "write_triangles": "tree.templates",
+    "write_quads": "tree.templates",
+    "core_edges": "tree.templates",
 }
 
 #: Loading a module sets numba's cache directory for a while, which all threads share.

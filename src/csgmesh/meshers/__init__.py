@@ -3,7 +3,15 @@
 from csgmesh.meshers.constrained_delaunay import ConstrainedDelaunay
 from csgmesh.meshers.delaunay_refinement import DelaunayRefinement
 from csgmesh.meshers.quad_pairing import QuadPairing
+from csgmesh.meshers.quadtree import Quadtree
 from csgmesh.meshers.structured import Structured
 from csgmesh.meshers.worst import worst_cells
 
-__all__ = ["ConstrainedDelaunay", "DelaunayRefinement", "QuadPairing", "Structured", "worst_cells"]
+__all__ = [
+    "ConstrainedDelaunay",
+    "DelaunayRefinement",
+    "QuadPairing",
+    "Quadtree",
+    "Structured",
+    "worst_cells",
+]
