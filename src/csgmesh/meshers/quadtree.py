@@ -130,6 +130,8 @@ class Quadtree:
         SizeError, NameLookupError
             If the size is not positive and finite somewhere, or names nothing.
         """
+        if domain.periodic:
+            raise InputError("Quadtree does not mesh periodic sides alike; DelaunayRefinement does")
         wanted = resolve(size, domain)
         width = max(int(np.ceil(GROWTH / self.gradation - 1e-9)), 1)
         run = Run(domain, wanted, 1.0, width, self.max_points, WANTED, progress)

@@ -12,7 +12,7 @@ from csgmesh.meshers.quadtree_sampling import Samples
 from csgmesh.meshers.subdivision import Subdivision
 from csgmesh.meshers.workspace import CROSSING, ON_SEGMENT, Progress, Workspace
 from csgmesh.tree import LinearTree
-from csgmesh.tree.growth import MIXED
+from csgmesh.tree.growth import MIXED, RegionOf
 
 #: Leaves nearer to a boundary than this share of their size belong to the strip.
 NEAR = 0.55
@@ -54,7 +54,9 @@ class Grid:
     status: np.ndarray
 
 
-def sorted_grid(tree: LinearTree, region: np.ndarray, samples: Samples, region_of) -> Grid:  # type: ignore[no-untyped-def]
+def sorted_grid(
+    tree: LinearTree, region: np.ndarray, samples: Samples, region_of: RegionOf
+) -> Grid:
     """Sort a tree's leaves by where they lie to the boundary, and drop vertices too near to it."""
     ends = samples.points[samples.ends].reshape(-1)
     loose = np.setdiff1d(np.arange(len(samples.kept)), samples.ends)
@@ -114,7 +116,10 @@ class Strip:
 
 
 def triangulated_strip(
-    domain: Pslg, grid: Grid, samples: Samples, progress: Progress | None  # type: ignore[no-untyped-def]
+    domain: Pslg,
+    grid: Grid,
+    samples: Samples,
+    progress: Progress | None,
 ) -> Strip:
     """Triangulate the strip: all its vertices are given, none is inserted.
 
@@ -174,13 +179,15 @@ def places(tree: LinearTree, codes: np.ndarray) -> np.ndarray:
 
 
 def _cells(work: Workspace) -> tuple[np.ndarray, np.ndarray]:
-    cells = np.empty((work.n_triangles, 3), np.int32)
-    regions = np.empty(work.n_triangles, np.int64)
     used = np.zeros(work.n_points, np.uint8)
-    n = kernels.extract(
-        work.origin, work.twin, work.n_triangles, cells.reshape(-1), regions, used
+    n = kernels.mark_used(work.origin, work.twin, work.n_triangles, used)
+    cells, regions = np.empty((n, 3), np.int64), np.empty(n, np.int64)
+    kernels.extract(
+        work.origin,
+        work.twin,
+        work.n_triangles,
+        work.order.astype(np.int32),
+        cells.reshape(-1),
+        regions,
     )
-    return work.order[cells[:n]], regions[:n]
-
-
-__all__ = ["BAND", "CORE", "Crossed", "Grid", "OF_BAND", "Strip"]
+    return cells, regions

@@ -9,7 +9,7 @@ from csgmesh.domain.pslg import Pslg
 from csgmesh.meshers.subdivision import Subdivision, pieces_by_turning, subdivide
 from csgmesh.size.resolve import ResolvedSize, evaluate
 from csgmesh.tree import LinearTree
-from csgmesh.tree.growth import MIXED, Features, Growth
+from csgmesh.tree.growth import Features, Growth, RegionOf
 
 #: Largest leaf of a graded tree as a share of the size. Leaves are powers of two, so that edges
 #: come out between half of this and 1.4 times it.
@@ -80,7 +80,7 @@ class Grower:
         side = None if self.uniform is None else UNIFORM * scale * self.uniform
         self.root, self.level = root_of(domain, side)
         self.parts = self._first_parts()
-        self.finer: list[tuple[np.ndarray, float]] = []
+        self.finer: list[tuple[np.ndarray, np.ndarray]] = []
 
     def grown(self, width: int) -> Growth:
         """A balanced tree; chords of curves are nowhere much longer than the leaves beside them."""
@@ -151,7 +151,7 @@ class Grower:
                 out[at] = np.minimum(out[at], value)
         return out
 
-    def _regions(self, pieces: Subdivision):  # type: ignore[no-untyped-def]
+    def _regions(self, pieces: Subdivision) -> RegionOf:
         sides = self.domain.segment_region[pieces.segment]
         return FaceOracle(pieces.points, pieces.ends, sides).region
 
@@ -238,6 +238,3 @@ class Grower:
         segments = np.unique(pieces.segment[bent[long]])
         self.parts[segments] *= 2
         return bool(len(segments))
-
-
-__all__ = ["MIXED", "Grower"]

@@ -1,8 +1,9 @@
-"""One run of the quadtree mesher: tree, boundary, strip, inside; again where that was not enough."""
+"""One run of the quadtree mesher: tree, boundary, strip, and again where angles come out low."""
 
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
@@ -11,19 +12,17 @@ from csgmesh.domain.input_angles import sharp_corners
 from csgmesh.domain.pslg import Pslg
 from csgmesh.errors import MeshingError
 from csgmesh.improve import optimise
-from csgmesh.mesh import Mesh
 from csgmesh.measures.shapes import measure_cells
+from csgmesh.mesh import Mesh
 from csgmesh.meshers.quadtree_band import (
     OF_BAND,
     SLICE,
     Crossed,
-    Grid,
-    Strip,
     sorted_grid,
     triangulated_strip,
 )
 from csgmesh.meshers.quadtree_growth import Grower
-from csgmesh.meshers.quadtree_sampling import Samples, Strands
+from csgmesh.meshers.quadtree_sampling import Strands, folded
 from csgmesh.meshers.workspace import Progress
 from csgmesh.size.resolve import ResolvedSize
 from csgmesh.spatial import Boxes
@@ -87,11 +86,14 @@ class Run:
             growth = self.grower.grown(self.width)
             strands = Strands(self.domain, self.rigid)
             self.samples = strands.sampled(growth.tree, self.corners)
+            hidden = folded(self.domain, self.samples)
+            if (hidden & ~self.rigid).any():
+                # On a hairpin only the domain's own vertices tell one side from the other.
+                self.rigid |= hidden
+                self.samples = Strands(self.domain, self.rigid).sampled(growth.tree, self.corners)
             self.grid = sorted_grid(growth.tree, growth.region, self.samples, growth.region_of)
             try:
-                self.strip = triangulated_strip(
-                    self.domain, self.grid, self.samples, self.progress
-                )
+                self.strip = triangulated_strip(self.domain, self.grid, self.samples, self.progress)
             except Crossed as conflict:
                 self._resolve(conflict.edges)
                 continue
@@ -169,13 +171,12 @@ class Run:
         spans = [(b, min(b + SLICE, tree.n_leaves)) for b in range(0, tree.n_leaves, SLICE)]
         shape = tree.key, tree.level, grid.kind
         for begin, end in spans:
-            kernels.count_cells(
-                *shape, grid.corner, grid.status, begin, end, 1, fan, total, room
-            )
+            kernels.count_cells(*shape, grid.corner, grid.status, begin, end, 1, fan, total, room)
         number = self._numbered(spans)
         m = 2 * int(total[0]) + int(total[2])
-        cells, regions = np.empty((m + len(self.strip.cells), 3), np.int64), np.empty(
-            m + len(self.strip.cells), np.int64
+        cells, regions = (
+            np.empty((m + len(self.strip.cells), 3), np.int64),
+            np.empty(m + len(self.strip.cells), np.int64),
         )
         counts = np.zeros(1, np.int64)
         for begin, end in spans:
@@ -227,7 +228,7 @@ class Run:
             )
         return number
 
-    def facets(self) -> dict[str, dict[str, np.ndarray]]:
+    def facets(self) -> dict[str, Any]:
         """Edges of the boundary as facets, each with its first region on the left."""
         domain, samples = self.domain, self.samples
         segment = samples.segment
@@ -254,8 +255,8 @@ class Run:
         there = np.where(self._turned(), interval[:, ::-1], interval)
         return np.where(curved[:, None], there, self.samples.interval)
 
-
-    def mesh(self, info) -> Mesh:
+    def mesh(self, info: dict[str, object]) -> Mesh:
+        """The mesh of triangles."""
         cells, regions = self.triangles()
         domain = self.domain
         return Mesh(

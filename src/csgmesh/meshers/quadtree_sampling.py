@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from csgmesh import kernels
+from csgmesh.domain.curves import ARC
 from csgmesh.domain.input_angles import SharpCorners
 from csgmesh.domain.pslg import Pslg
 from csgmesh.mesh.topology import connected
@@ -147,9 +148,10 @@ class Strands:
         strand = np.empty(domain.n_segments, np.int64)
         strand[self.order] = self.strand
         # A chord is never much longer than those that the domain found necessary.
-        spacing = np.where(
-            self.is_bent[segment], np.minimum(size, length[segment]), size
-        ) / self.closer[strand[segment]]
+        spacing = (
+            np.where(self.is_bent[segment], np.minimum(size, length[segment]), size)
+            / self.closer[strand[segment]]
+        )
         turning = pieces_by_turning(domain)[segment] / length[segment]
         density = np.maximum(1.0 / spacing, np.where(turning * length[segment] > 1, turning, 0.0))
         cumulative = np.r_[0.0, np.cumsum(part * density)]
@@ -171,7 +173,12 @@ class Strands:
         return self._assembled(at, np.repeat(row, n), pieces, cumulative, first, last)
 
     def _enough(
-        self, n: np.ndarray, row: np.ndarray, segment: np.ndarray, first: np.ndarray, last: np.ndarray
+        self,
+        n: np.ndarray,
+        row: np.ndarray,
+        segment: np.ndarray,
+        first: np.ndarray,
+        last: np.ndarray,
     ) -> np.ndarray:
         """At least three edges along a closed strand, two along a bent one that is one piece."""
         domain = self.domain
@@ -184,9 +191,7 @@ class Strands:
         n[short] = np.maximum(n[short], least[row[short]])
         return n
 
-    def _shells(
-        self, tree: LinearTree, corners: SharpCorners, length: np.ndarray
-    ) -> np.ndarray:
+    def _shells(self, tree: LinearTree, corners: SharpCorners, length: np.ndarray) -> np.ndarray:
         """Distance from its begin and end at which each strand has a vertex, 0 for none, (k, 2)."""
         domain = self.domain
         out = np.zeros((len(self.begin), 2))
@@ -228,7 +233,9 @@ class Strands:
         last: np.ndarray,
     ) -> Samples:
         domain = self.domain
-        piece = np.clip(np.searchsorted(cumulative, at, side="right") - 1, first[row], last[row] - 1)
+        piece = np.clip(
+            np.searchsorted(cumulative, at, side="right") - 1, first[row], last[row] - 1
+        )
         part = cumulative[piece + 1] - cumulative[piece]
         within = np.clip((at - cumulative[piece]) / part, 0.0, 1.0)
         segment = pieces[piece, 0].astype(np.int64)
@@ -279,3 +286,27 @@ def _joints(domain: Pslg, rigid: np.ndarray) -> tuple[np.ndarray, np.ndarray, np
     is_fixed = np.ones(n, bool)
     is_fixed[at[same]] = False
     return f[same], g[same], is_fixed
+
+
+def folded(domain: Pslg, samples: Samples) -> np.ndarray:
+    """Segments, (m,) bool, of curves whose other side is nearer to some edge than its own."""
+    out = np.zeros(domain.n_segments, bool)
+    curve = domain.segment_curve[samples.segment]
+    at = np.flatnonzero(curve >= 0)
+    at = at[domain.curves.kind[curve[at]] > ARC]
+    if not len(at):
+        return out
+    used = np.flatnonzero(domain.segment_curve >= 0)
+    extent = np.tile([np.inf, -np.inf], (len(domain.curves), 1))
+    np.minimum.at(
+        extent[:, 0], domain.segment_curve[used], domain.segment_interval[used].min(axis=1)
+    )
+    np.maximum.at(
+        extent[:, 1], domain.segment_curve[used], domain.segment_interval[used].max(axis=1)
+    )
+    middle = samples.points[samples.ends[at]].mean(axis=1)
+    t = domain.curves.project(curve[at], middle, *extent[curve[at]].T)
+    lo, hi = np.sort(samples.interval[at], axis=1).T
+    lost = curve[at[(t < lo) | (t > hi)]]
+    out[used] = np.isin(domain.segment_curve[used], lost)
+    return out

@@ -46,6 +46,8 @@ class Features:
     wanted: np.ndarray
 
 
+#: Region of points (k, 2) away from all features, -1 outside.
+RegionOf = Callable[[np.ndarray], np.ndarray]
 #: Which leaves to split by size: (leaves, regions of them, lists of features) to (k,) bool.
 IsCoarse = Callable[["Growth", np.ndarray], np.ndarray]
 
@@ -61,9 +63,7 @@ class Growth:
         Region of points (k, 2) that are far from all features, -1 outside.
     """
 
-    def __init__(
-        self, root: LinearTree, features: Features, region_of: Callable[[np.ndarray], np.ndarray]
-    ) -> None:
+    def __init__(self, root: LinearTree, features: Features, region_of: RegionOf) -> None:
         self.tree = root
         self.features = features
         self.region_of = region_of
@@ -85,9 +85,7 @@ class Growth:
         while True:
             marked = np.zeros(self.tree.n_leaves, np.uint8)
             self._mark_features(marked)
-            candidates = np.flatnonzero(
-                (self.is_new == 1) & (marked == 0) & (self.region != -1)
-            )
+            candidates = np.flatnonzero((self.is_new == 1) & (marked == 0) & (self.region != -1))
             if len(candidates):
                 marked[candidates] = is_coarse(self, candidates)
             if not marked.any():

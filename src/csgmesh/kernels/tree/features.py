@@ -194,7 +194,21 @@ def is_crowded(f, g, x, y, w, h, ends, vertex, xy, sides, share, part, way):
 
 @njit(**ENTRY)
 def mark_features(
-    key, level, box, active, offset, item, is_new, ends, vertex, xy, sides, wanted, share, room, mark
+    key,
+    level,
+    box,
+    active,
+    offset,
+    item,
+    is_new,
+    ends,
+    vertex,
+    xy,
+    sides,
+    wanted,
+    share,
+    room,
+    mark,
 ):
     """Mark new leaves larger than a feature near them wants, or than a gap between two of them.
 

@@ -10,8 +10,9 @@ from .morton import DEPTH, gathered, holder, is_inside, key_of
 
 @njit(**ENTRY)
 def split_leaves(key, level, marked, new_key, new_level, is_new, first):
-    """Replace marked leaves by their four children; all others are copied.
+    """Replace leaves marked 1 by their four children; all others are copied.
 
+    is_new: 1 for children, and for leaves marked 2, which are to be looked at once more.
     first: new number of each old leaf, or of its first child.
     """
     keys = pointer(key)
@@ -26,10 +27,10 @@ def split_leaves(key, level, marked, new_key, new_level, is_new, first):
         k = keys[i]
         deep = levels[i]
         at[i] = n
-        if mark[i] == 0:
+        if mark[i] & 1 == 0:
             out[n] = k
             out_level[n] = deep
-            new[n] = 0
+            new[n] = mark[i] >> 1
             n += 1
         else:
             step = 1 << (2 * (DEPTH - deep - 1))
@@ -43,7 +44,10 @@ def split_leaves(key, level, marked, new_key, new_level, is_new, first):
 
 @njit(**HELPER)
 def mark_around(keys, levels, mark, n, i, width, corners):
-    """Mark the leaves near leaf i that are more than twice its size; how many."""
+    """Mark the leaves near leaf i that are more than twice its size; how many.
+
+    Leaf i is marked 2 if one of them will still be too large when it has been split.
+    """
     wanted = levels[i] - 1
     size = 1 << (DEPTH - wanted)
     x = gathered(keys[i]) & ~(size - 1)
@@ -61,9 +65,12 @@ def mark_around(keys, levels, mark, n, i, width, corners):
                 if not is_inside(u, v):
                     break
                 j = holder(keys, n, key_of(u, v), i)
-                if levels[j] < wanted and mark[j] == 0:
-                    mark[j] = 1
-                    found += 1
+                if levels[j] < wanted:
+                    if mark[j] & 1 == 0:
+                        mark[j] = mark[j] | 1
+                        found += 1
+                    if levels[j] < wanted - 1:
+                        mark[i] = mark[i] | 2
     return found
 
 

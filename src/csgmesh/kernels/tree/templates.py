@@ -193,7 +193,7 @@ def number_vertices(key, level, box, status, begin, end, number, points, counts)
 
 @njit(**HELPER)
 def write_ring(keys, levels, n, used, corner, ids, i, mids, ring, o):
-    """Vertices around leaf i with hanging ones, to ring[o ...], from the lower left; their count."""
+    """Vertices around leaf i, hanging ones too, to ring[o ...]; how many."""
     hanging(keys, levels, n, used, i, mids)
     m = 0
     for c in range(4):
@@ -252,7 +252,22 @@ def write_triangles(
 
 @njit(**ENTRY)
 def write_quads(
-    key, level, kind, corner, status, fan, number, region, begin, end, cells, regions, rings, of, counts, room
+    key,
+    level,
+    kind,
+    corner,
+    status,
+    fan,
+    number,
+    region,
+    begin,
+    end,
+    cells,
+    regions,
+    rings,
+    of,
+    counts,
+    room,
 ):
     """Core leaves as quads; those with hanging vertices as rings of up to eight, padded with -1.
 
