@@ -89,6 +89,15 @@ _HOME = {
         "UniformSize",
         "minimum",
     ),
+    "csgmesh.triangulation": (
+        "Voronoi",
+        "delaunay",
+        "delaunay_balls",
+        "flip_to_delaunay",
+        "minimum_spanning_tree",
+        "nearest_neighbours",
+        "voronoi",
+    ),
     "csgmesh.viz": ("draw",),
 }
 
@@ -149,16 +158,22 @@ __all__ = [
     "Triangle",
     "UnboundedDomainError",
     "UniformSize",
+    "Voronoi",
     "check",
+    "delaunay",
+    "delaunay_balls",
     "difference",
     "draw",
     "elevate",
     "evaluate",
+    "flip_to_delaunay",
     "from_meshio",
     "generate",
     "intersection",
     "load",
     "minimum",
+    "minimum_spanning_tree",
+    "nearest_neighbours",
     "quality",
     "read",
     "refine",
@@ -167,6 +182,7 @@ __all__ = [
     "to_meshio",
     "to_skfem",
     "union",
+    "voronoi",
     "write",
 ]
 
@@ -243,6 +259,15 @@ if TYPE_CHECKING:
         SizeField,
         UniformSize,
         minimum,
+    )
+    from csgmesh.triangulation import (
+        Voronoi,
+        delaunay,
+        delaunay_balls,
+        flip_to_delaunay,
+        minimum_spanning_tree,
+        nearest_neighbours,
+        voronoi,
     )
     from csgmesh.viz import draw
 

@@ -53,6 +53,7 @@ _HOME = {
     "treat_triangles": "improvement",
     "lowest_sources": "sizes.sources",
     "limit_growth": "sizes.gradation",
+    "flip_edges": "delaunay_flips.flips",
     "number_edges": "refine_cells.edges",
     "cells_of_edges": "refine_cells.edges",
     "spread_marks": "refine_cells.edges",
