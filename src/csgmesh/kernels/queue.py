@@ -1,4 +1,9 @@
-"""Queue of bad triangles: buckets by shortest edge, shortest first, first in first out in each."""
+"""Queue of bad triangles: buckets by shortest edge, shortest first.
+
+Within a bucket first in, first out, which makes the fewest triangles where nothing but the angles
+is asked for; or last in, first out, for gaps between lattices: what is near in the mesh is then
+near in time, and still in the processor's cache.
+"""
 
 from __future__ import annotations
 
@@ -10,7 +15,8 @@ from numba import njit
 from .pointers import HELPER, bits
 
 #: head, tail: first and last entry of each bucket. items: (triangle, third vertex, next) each.
-#: state: first free entry, entries ever used, no bucket below this one is filled, entries queued.
+#: state: first free entry, entries ever used, no bucket below this one is filled, entries queued,
+#: 1 for last in, first out.
 Queue = namedtuple("Queue", "head tail items state")
 
 N_BUCKETS = 1024
@@ -37,12 +43,16 @@ def push(q, b, t, apex):
         q.state[1] = k + 1
     q.items[3 * k] = t
     q.items[3 * k + 1] = apex
-    q.items[3 * k + 2] = -1
-    if q.head[b] < 0:
+    if q.state[4] != 0:
+        q.items[3 * k + 2] = q.head[b]
         q.head[b] = k
     else:
-        q.items[3 * q.tail[b] + 2] = k
-    q.tail[b] = k
+        q.items[3 * k + 2] = -1
+        if q.head[b] < 0:
+            q.head[b] = k
+        else:
+            q.items[3 * q.tail[b] + 2] = k
+        q.tail[b] = k
     if b < q.state[2]:
         q.state[2] = b
     q.state[3] = q.state[3] + 1

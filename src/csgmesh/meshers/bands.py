@@ -9,7 +9,14 @@ import numpy as np
 
 from csgmesh.domain.pslg import Pslg
 from csgmesh.meshers.background import Background
-from csgmesh.meshers.lattice import Blocks, Events, Frame, is_coarse_enough, keep_from_boundary
+from csgmesh.meshers.lattice import (
+    Blocks,
+    Events,
+    Frame,
+    extent,
+    is_coarse_enough,
+    keep_from_boundary,
+)
 from csgmesh.meshers.subdivision import Subdivision
 
 #: Lattice points nearer than this to a level set are left out (share of the size): then no
@@ -24,9 +31,9 @@ LEAST_STEP, MOST_STEP = 1.25, 1.5
 EDGES_ACROSS = 10.0
 #: Sizes that differ by a smaller factor share a lattice.
 SAME_SIZE = 1.02
-#: A band is left to refinement if it would hold fewer points, in all or for each edge of its ends.
+#: A band is left to refinement if it would hold fewer points, in all or for each edge along it.
 FEWEST_POINTS = 100
-ROWS_ACROSS = 2.0
+ROWS_ACROSS = 3.5
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,8 +67,9 @@ class Levels:
         corners, rim = ground.triangles()
         xy, size = ground.points.reshape(-1, 2), ground.size
         h = size[corners]
-        first = np.searchsorted(values, h.min(axis=1), side="right")
-        count = np.searchsorted(values, h.max(axis=1), side="right") - first
+        least, most = (f(f(h[:, 0], h[:, 1]), h[:, 2]) for f in (np.minimum, np.maximum))
+        first = np.searchsorted(values, least, side="right")
+        count = np.searchsorted(values, most, side="right") - first
         at = np.repeat(np.arange(len(corners)), count)
         of = first[at] + np.arange(len(at)) - (np.cumsum(count) - count)[at]
         order = np.argsort(of, kind="stable")
@@ -119,20 +127,22 @@ def lay_bands(
     demand = Demand.of(ground)
     sizes = demand.lattices(fixed)
     limits = np.concatenate([NEARLY * sizes[:1], np.sqrt(sizes[1:] * sizes[:-1])])
+    bands = [k for k in demand.worthwhile(limits) if is_coarse_enough(domain, sizes[k])]
+    if not bands:
+        return None
     levels = Levels.of_mesh(ground, limits)
     near = Near(cut)
     found = []
-    for k in demand.worthwhile(levels):
+    for k in bands:
         size = float(sizes[k])
-        if is_coarse_enough(domain, size):
-            ends, steps = levels.between(k)
-            events = Events.over(Frame.of(domain, size), ends.reshape(-1, 2))
-            n_level = int(np.diff(np.searchsorted(levels.of, [k, k + 2]))[0])
-            events.keep_from_segments(ends[:n_level], steps[:n_level], FROM_LEVEL * size)
-            events.keep_from_points(ends[:n_level].reshape(-1, 2), FROM_LEVEL * size)
-            events.keep_from_segments(ends[n_level:], steps[n_level:], 0.0)
-            keep_from_boundary(events, *near.box(ends.reshape(-1, 2), size))
-            found.append(events.runs())
+        ends, steps = levels.between(k)
+        events = Events.over(Frame.of(domain, size), ends.reshape(-1, 2))
+        n_level = int(np.diff(np.searchsorted(levels.of, [k, k + 2]))[0])
+        events.keep_from_segments(ends[:n_level], steps[:n_level], FROM_LEVEL * size)
+        events.keep_from_points(ends[:n_level].reshape(-1, 2), FROM_LEVEL * size)
+        events.keep_from_segments(ends[n_level:], steps[n_level:], 0.0)
+        keep_from_boundary(events, *near.box(ends.reshape(-1, 2), size))
+        found.append(events.runs())
     return Blocks.together(found)
 
 
@@ -153,7 +163,7 @@ class Demand:
         du, dv = h[:, 1] - h[:, 0], h[:, 2] - h[:, 0]
         twice = np.maximum(u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0], np.finfo(float).tiny)
         slope = np.hypot(du * v[:, 1] - dv * u[:, 1], dv * u[:, 0] - du * v[:, 0]) / twice
-        size = h.mean(axis=1)
+        size = (h[:, 0] + h[:, 1] + h[:, 2]) / 3.0
         return cls(twice / (np.sqrt(3.0) * size**2), size, slope)
 
     def lattices(self, fixed: np.ndarray) -> np.ndarray:
@@ -171,18 +181,18 @@ class Demand:
         ]
         return np.exp(np.concatenate([*parts, stops[-1:]]))
 
-    def worthwhile(self, levels: Levels) -> list[int]:
-        """The bands that are wide enough for a lattice."""
-        n = len(levels.values)
-        band = np.searchsorted(levels.values, self.size, side="right") - 1
-        points = np.bincount(np.maximum(band, 0), self.points, n)
-        long = np.hypot(*np.diff(levels.chord, axis=1)[:, 0].T)
-        seam = np.bincount(levels.of, long, n + 1) / np.append(levels.values, np.inf)
-        return [
-            k
-            for k in range(n)
-            if points[k] > max(FEWEST_POINTS, ROWS_ACROSS * (seam[k] + seam[k + 1]))
-        ]
+    def worthwhile(self, limits: np.ndarray) -> np.ndarray:
+        """The bands between limits, counted, that are wide enough for a lattice.
+
+        A level set is as long as the integral of the slope over the band, divided by the
+        difference of the sizes on both sides.
+        """
+        n = len(limits)
+        band = np.maximum(np.searchsorted(limits, self.size, side="right") - 1, 0)
+        points = np.bincount(band, self.points, n)
+        seam = np.bincount(band, self.points * self.slope * self.size, n)
+        seam /= np.append(np.diff(limits), np.inf)
+        return np.flatnonzero((points > FEWEST_POINTS) & (points > ROWS_ACROSS * seam))
 
 
 class Near:
@@ -197,8 +207,8 @@ class Near:
 
     def box(self, within: np.ndarray, reach: float) -> tuple[np.ndarray, np.ndarray]:
         """Points (n, 2) and pieces (k, 2, 2) in the box of `within`, which reaches farther."""
-        columns = np.ascontiguousarray(within.T)
-        low, high = columns.min(axis=1) - reach, columns.max(axis=1) + reach
+        low, high = extent(within)
+        low, high = low - reach, high + reach
         points = np.ones(len(self.points), bool)
         pieces = np.ones(len(self.ends), bool)
         for k in (0, 1):

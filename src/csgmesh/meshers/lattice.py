@@ -205,8 +205,7 @@ class Events:
     @classmethod
     def over(cls, frame: Frame, points: np.ndarray) -> Events:
         """Along the rows that pass the box of some points."""
-        places = frame(points)
-        (s0, t0), (s1, t1) = places.min(axis=0), places.max(axis=0)
+        (s0, t0), (s1, t1) = extent(frame(points))
         row, u = 2 * int(np.floor(0.5 * t0 / ROW_HEIGHT)), 2 * int(np.floor(0.5 * s0))
         rows = int(np.ceil(t1 / ROW_HEIGHT)) - row + 1
         return cls(frame.shifted(row, u), rows, int(np.ceil(s1)) - u + 2)
@@ -241,6 +240,12 @@ class Events:
         along, across = 0.5 * self.frame.size * self.frame.axes
         start = self.frame.origin + runs[0][:, None] * ROW_HEIGHT * across
         return runs, np.column_stack([start, np.broadcast_to(along, (n, 2))])
+
+
+def extent(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Least and largest coordinates; by columns, which is several times as fast."""
+    x, y = np.ascontiguousarray(points.T)
+    return np.array([x.min(), y.min()]), np.array([x.max(), y.max()])
 
 
 def flat(points: np.ndarray) -> np.ndarray:

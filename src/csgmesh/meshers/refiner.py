@@ -9,7 +9,7 @@ from csgmesh.domain.input_angles import SharpCorners
 from csgmesh.errors import MeshingError
 from csgmesh.meshers.background import Background
 from csgmesh.meshers.pairing import mirror_splits
-from csgmesh.meshers.workspace import BUDGET, ROOM, SLICE, STUCK, Workspace, grown
+from csgmesh.meshers.workspace import BUDGET, NO_TRIANGLE, ROOM, SLICE, STUCK, Workspace, grown
 from csgmesh.tolerance import coordinate_ulp
 
 #: Circumradius allowed and longest subsegment allowed, as shares of the wanted edge length:
@@ -67,7 +67,7 @@ class Refiner:
         self.curve_data = domain.curves.data.reshape(-1).copy()
         self.buckets = np.full((2, N_BUCKETS), -1, np.int32)
         self.items = np.empty(3 * 4096, np.int32)
-        self.state = np.array([-1, 0, N_BUCKETS - 1, 0], np.int64)
+        self.state = np.array([-1, 0, N_BUCKETS - 1, 0, work.has_lattice], np.int64)
         self.todo = np.empty(3 * 2048, np.int32)
         self.size = np.empty(1)
         self.home = np.empty(1, np.int32)
@@ -148,7 +148,7 @@ class Refiner:
 
     def look_again(self) -> None:
         """Let the next run test every triangle anew, after sizes have changed."""
-        self.count[4], self.count[9] = 0, 2**62
+        self.count[4], self.count[9] = 0, NO_TRIANGLE
 
     def segments(self) -> np.ndarray:
         """The domain's segment of each subsegment."""

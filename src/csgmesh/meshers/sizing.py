@@ -189,8 +189,9 @@ class Sizing:
         value[np.isinf(value)] = self.largest
 
     def _new_vertices(self, corners: np.ndarray) -> np.ndarray:
-        v = np.unique(corners)
-        return v[v >= self.known].astype(np.int64) - self.known
+        among = np.zeros(self.refiner.work.n_points, bool)
+        among[corners] = True
+        return np.flatnonzero(among[self.known :])
 
     def _boundaries(self) -> None:
         """Sizes on named boundaries, and on all boundaries what their shape asks for."""
@@ -202,7 +203,8 @@ class Sizing:
         refiner.size[at] = np.minimum(refiner.size[at], self.feature)
         marker = work.domain.segment_marker[refiner.segments()]
         for markers, source in self.size.boundary:
-            at = np.unique(ends[np.isin(marker, markers)]).astype(np.int64)
-            probes = np.flatnonzero(np.isin(work.domain.point_marker, markers))
-            at = np.union1d(at, work.rank[probes])
+            named = np.zeros(work.n_points, bool)
+            named[ends[np.isin(marker, markers)]] = True
+            named[work.rank[np.flatnonzero(np.isin(work.domain.point_marker, markers))]] = True
+            at = np.flatnonzero(named)
             refiner.size[at] = np.minimum(refiner.size[at], evaluate(source, xy[at]))

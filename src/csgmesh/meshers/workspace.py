@@ -19,6 +19,7 @@ DONE, ROOM, SLICE, BUDGET, DUPLICATE, CROSSING, ON_SEGMENT, COLLINEAR, STUCK, LE
 #: Triangles that a cavity may hold before its buffers have to grow; most hold fewer than ten.
 CAVITY = 512
 BOTH_APEXES = -2
+NO_TRIANGLE = 2**62
 #: Points of a domain: their numbers share a 64-bit key with their place on a curve.
 MOST_POINTS = 2**28
 
@@ -69,7 +70,7 @@ class Workspace:
         self.n_points = n
         self.n_triangles = 0
         #: Triangles from this one on are known to be good.
-        self.regular_from = 2**62
+        self.regular_from = NO_TRIANGLE
         half_edges = 4 * (2 * n + 8)
         self.origin = np.empty(half_edges, np.int32)
         self.twin = np.empty(half_edges, np.int32)
@@ -78,6 +79,11 @@ class Workspace:
         self.ends = self.rank.take(pieces.ends).reshape(-1)
         self.recovered = 0
         self.segment, self.interval = pieces.segment, pieces.interval
+
+    @property
+    def has_lattice(self) -> bool:
+        """Whether blocks of ready triangles are part of the triangulation."""
+        return self.regular_from < NO_TRIANGLE
 
     def report(self, stage: str, done: int, total: int) -> None:
         """Tell whoever listens how far things are."""
