@@ -191,7 +191,7 @@ class Demand:
         band = np.maximum(np.searchsorted(limits, self.size, side="right") - 1, 0)
         points = np.bincount(band, self.points, n)
         seam = np.bincount(band, self.points * self.slope * self.size, n)
-        seam /= np.append(np.diff(limits), np.inf)
+        seam = seam / np.append(np.diff(limits), np.inf)
         return np.flatnonzero((points > FEWEST_POINTS) & (points > ROWS_ACROSS * seam))
 
 

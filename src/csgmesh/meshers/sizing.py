@@ -206,5 +206,5 @@ class Sizing:
             named = np.zeros(work.n_points, bool)
             named[ends[np.isin(marker, markers)]] = True
             named[work.rank[np.flatnonzero(np.isin(work.domain.point_marker, markers))]] = True
-            at = np.flatnonzero(named)
-            refiner.size[at] = np.minimum(refiner.size[at], evaluate(source, xy[at]))
+            on = np.flatnonzero(named)
+            refiner.size[on] = np.minimum(refiner.size[on], evaluate(source, xy[on]))
