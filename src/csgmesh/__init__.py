@@ -74,8 +74,9 @@ _HOME = {
     "csgmesh.meshers": (
         "ConstrainedDelaunay",
         "DelaunayRefinement",
+        "Layers",
+        "PerRegion",
         "QuadPairing",
-        "Quadtree",
         "Structured",
     ),
     "csgmesh.pipeline": ("check", "generate"),
@@ -88,15 +89,6 @@ _HOME = {
         "SizeField",
         "UniformSize",
         "minimum",
-    ),
-    "csgmesh.triangulation": (
-        "Voronoi",
-        "delaunay",
-        "delaunay_balls",
-        "flip_to_delaunay",
-        "minimum_spanning_tree",
-        "nearest_neighbours",
-        "voronoi",
     ),
     "csgmesh.viz": ("draw",),
 }
@@ -130,11 +122,13 @@ __all__ = [
     "FileFormatError",
     "HalfSpace",
     "InputError",
+    "Layers",
     "Mesh",
     "MeshingError",
     "NameLookupError",
     "NearSize",
     "Outline",
+    "PerRegion",
     "Periodic",
     "Plc",
     "Polygon",
@@ -142,7 +136,6 @@ __all__ = [
     "Primitive",
     "Pslg",
     "QuadPairing",
-    "Quadtree",
     "Quality",
     "RegionSize",
     "Regions",
@@ -158,22 +151,16 @@ __all__ = [
     "Triangle",
     "UnboundedDomainError",
     "UniformSize",
-    "Voronoi",
     "check",
-    "delaunay",
-    "delaunay_balls",
     "difference",
     "draw",
     "elevate",
     "evaluate",
-    "flip_to_delaunay",
     "from_meshio",
     "generate",
     "intersection",
     "load",
     "minimum",
-    "minimum_spanning_tree",
-    "nearest_neighbours",
     "quality",
     "read",
     "refine",
@@ -182,7 +169,6 @@ __all__ = [
     "to_meshio",
     "to_skfem",
     "union",
-    "voronoi",
     "write",
 ]
 
@@ -245,8 +231,9 @@ if TYPE_CHECKING:
     from csgmesh.meshers import (
         ConstrainedDelaunay,
         DelaunayRefinement,
+        Layers,
+        PerRegion,
         QuadPairing,
-        Quadtree,
         Structured,
     )
     from csgmesh.pipeline import check, generate
@@ -259,15 +246,6 @@ if TYPE_CHECKING:
         SizeField,
         UniformSize,
         minimum,
-    )
-    from csgmesh.triangulation import (
-        Voronoi,
-        delaunay,
-        delaunay_balls,
-        flip_to_delaunay,
-        minimum_spanning_tree,
-        nearest_neighbours,
-        voronoi,
     )
     from csgmesh.viz import draw
 

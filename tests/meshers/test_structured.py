@@ -234,7 +234,7 @@ def test_a_wrong_block_fails_the_check() -> None:
     for wrong in (
         Block(block.cells[:, ::-1], block.points),
         Block(block.cells, block.points[::-1]),
-        Block(block.cells[:-1], block.points[:-1]),
+        Block(block.cells * 0, block.points),
     ):
         values = {name: getattr(mesh, name) for name in mesh.__dataclass_fields__}
         assert not cm.check(cm.Mesh(**(values | {"blocks": {"domain": wrong}}))).ok

@@ -21,11 +21,11 @@ from csgmesh.domainfile.fields import ValidationContext
 from csgmesh.domainfile.limits import Limits
 from csgmesh.domainfile.outputs import check_suffix
 from csgmesh.domainfile.parameters import described, resolve_parameters
-from csgmesh.domainfile.parts import Problem, problems_of
+from csgmesh.domainfile.parts import Part, Problem, problems_of
 from csgmesh.domainfile.schema import MeshPart, file_model
 from csgmesh.domainfile.shapes import Builder, build_shapes, placed
 from csgmesh.domainfile.sizes import ExpressionSize, constant_or_size
-from csgmesh.domainfile.vocabulary import mesher_classes
+from csgmesh.domainfile.vocabulary import Arguments, mesher_classes
 from csgmesh.errors import (
     BudgetError,
     DomainFileError,
@@ -175,6 +175,8 @@ class DomainFile:
         options = given[key] if isinstance(given.get(key), dict) else {}
         first = sorted(options.items(), key=lambda item: not message.startswith(item[0]))
         for option, value in first:
+            if repr(option) in message:
+                return ("mesh", key, option)
             names = value if isinstance(value, dict) else {}
             for name in names:
                 if repr(name) in message and not message.startswith("size"):
@@ -263,7 +265,10 @@ def load(
 
 def _joined(document: Document, problems: list[Problem]) -> DomainFileError:
     """One error for all that is wrong: the first place in the file leads."""
-    errors = [document.error(p.message, p.path, key=p.is_key, offset=p.offset) for p in problems]
+    errors = [
+        document.error(p.message, _as_written(document, p.path), key=p.is_key, offset=p.offset)
+        for p in problems
+    ]
     errors.sort(key=lambda error: (error.line, error.column))
     first, *others = errors[:_MOST_PROBLEMS]
     if not others:
@@ -273,6 +278,14 @@ def _joined(document: Document, problems: list[Problem]) -> DomainFileError:
     if len(errors) > _MOST_PROBLEMS:
         listed += f"\n… and {len(errors) - _MOST_PROBLEMS} more"
     return DomainFileError(listed, file=document.file, line=first.line, column=first.column)
+
+
+def _as_written(document: Document, path: KeyPath) -> KeyPath:
+    """A path without the key that a shorter way of writing leaves out."""
+    for k, step in enumerate(path):
+        if step == "meshers" and not document.has(path[: k + 1]):
+            return path[:k] + path[k + 1 :]
+    return path
 
 
 def _domain(part: Any, builder: Builder) -> Any:
@@ -286,8 +299,23 @@ def _mesher(document: Document, mesh: MeshPart) -> Any:
     key = mesh.mesher
     if key is None:
         return None
-    options = getattr(mesh, key).given()
-    return placed(document, ("mesh", key), lambda: mesher_classes()[key](**options))
+    return _made(document, ("mesh", key), getattr(mesh, key))
+
+
+def _made(document: Document, path: KeyPath, value: Any) -> Any:
+    """What arguments in a file make: a mesher, layers; values of other types stay."""
+    if isinstance(value, Arguments):
+        options = {k: _made(document, (*path, k), v) for k, v in value.given().items()}
+        make = value.builds
+        assert make is not None
+        return placed(document, path, lambda: make(**options))
+    if isinstance(value, Part):
+        key = value.keys_written[0]
+        return _made(document, (*path, key), getattr(value, key))
+    if isinstance(value, dict):
+        within = path if document.has(path) else path[:-1]
+        return {k: _made(document, (*within, k), v) for k, v in value.items()}
+    return value
 
 
 def _size(document: Document, size: Any, dim: int, parameters: Mapping[str, float]) -> Any:

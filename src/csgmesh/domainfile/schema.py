@@ -174,7 +174,12 @@ def file_model() -> Any:
     }
     domain = _model("Domain", _DomainPart, {**kinds, **wholes, **beside})
     domain.sources = (*kinds, *wholes)
+    choice = _model(
+        "MesherChoice", _OneOf, {key: _optional(model) for key, model in meshers().items()}
+    )
     mesh = _model("Mesh", MeshPart, {key: _optional(model) for key, model in meshers().items()})
+    for model in (*meshers().values(), choice, mesh):
+        model.model_rebuild(_types_namespace={"MesherChoice": choice})
     file = _model(
         "DomainFile",
         _FilePart,

@@ -6,7 +6,7 @@ import inspect
 import re
 from collections.abc import Callable, Mapping
 from functools import cache
-from typing import Any
+from typing import Any, ClassVar, ForwardRef
 
 from pydantic import Field, create_model
 
@@ -37,6 +37,11 @@ def snake_case(name: str) -> str:
 class Arguments(Part):
     """Arguments of a constructor or a method, by name."""
 
+    #: What the arguments make, where they stand for a value.
+    builds: ClassVar[Callable[..., Any] | None] = None
+    #: The argument that a mapping without its key stands for.
+    sole_mapping: ClassVar[str] = ""
+
     @classmethod
     def required(cls) -> list[str]:
         """Names of the arguments without a default."""
@@ -46,6 +51,8 @@ class Arguments(Part):
     def spread(cls, data: Any) -> Any:
         """The mapping of arguments: a sole value stands for the one that is required."""
         required = cls.required()
+        if cls.sole_mapping and isinstance(data, dict) and cls.sole_mapping not in data:
+            return {cls.sole_mapping: data}
         if data is None and not required:
             return {}
         # A mapping of words is arguments; anything else can only be the value of the one.
@@ -77,7 +84,9 @@ def arguments_of(
         if parameter.name == "self":
             continue
         annotation = str(getattr(parameter.annotation, "__name__", parameter.annotation))
-        kind = NestedShape if annotation == "Shape" else field_type(annotation)
+        kind = (
+            NestedShape if annotation == "Shape" else _nested(annotation) or field_type(annotation)
+        )
         if counts and kind is Whole:
             kind = Count
         if parameter.default is inspect.Parameter.empty:
@@ -88,13 +97,36 @@ def arguments_of(
             definitions[parameter.name] = (kind, Field(default=None))
     # Where the model stands decides what "Shape" means in it: the part of a file, not the class.
     where = NestedShape.__metadata__[0].__module__
-    return create_model(
+    model = create_model(
         name,
         __base__=Arguments,
         __doc__=_summary(function),
         __module__=where,
         **definitions,
     )
+    model.builds = function
+    named = [k for k, (kind, _) in definitions.items() if kind == NAMED_MESHERS]
+    model.sole_mapping = named[0] if named else ""
+    return model
+
+
+#: A mapping of names to meshers; what a mesher is, the schema says when it knows all of them.
+NAMED_MESHERS: Any = dict.__class_getitem__((str, ForwardRef("MesherChoice")))
+
+
+def _nested(annotation: str) -> Any:
+    """The field for a mapping of names to `Layers` or to meshers; None for other annotations."""
+    if annotation == "Mapping[str, Layers]":
+        return dict[str, layers_arguments()]  # type: ignore[misc]
+    return NAMED_MESHERS if annotation == "Mapping[str, Mesher]" else None
+
+
+@cache
+def layers_arguments() -> Any:
+    """Model of the arguments of `Layers`."""
+    from csgmesh.meshers import Layers
+
+    return arguments_of(Layers, "LayersArguments")
 
 
 @cache

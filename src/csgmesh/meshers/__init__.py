@@ -2,16 +2,18 @@
 
 from csgmesh.meshers.constrained_delaunay import ConstrainedDelaunay
 from csgmesh.meshers.delaunay_refinement import DelaunayRefinement
+from csgmesh.meshers.layers import Layers
+from csgmesh.meshers.per_region import PerRegion
 from csgmesh.meshers.quad_pairing import QuadPairing
-from csgmesh.meshers.quadtree import Quadtree
 from csgmesh.meshers.structured import Structured
 from csgmesh.meshers.worst import worst_cells
 
 __all__ = [
     "ConstrainedDelaunay",
     "DelaunayRefinement",
+    "Layers",
+    "PerRegion",
     "QuadPairing",
-    "Quadtree",
     "Structured",
     "worst_cells",
 ]

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -16,6 +16,7 @@ from csgmesh.mesh import Mesh
 from csgmesh.meshers.assembly import assemble
 from csgmesh.meshers.components import parts_of
 from csgmesh.meshers.joining import join
+from csgmesh.meshers.layers import Layers, checked_layers, with_layers
 from csgmesh.meshers.meshing import Meshing
 from csgmesh.meshers.partwise import Partwise
 from csgmesh.meshers.side_by_side import cores
@@ -45,6 +46,8 @@ class DelaunayRefinement:
     threads : int, optional
         Bound on the number of threads, by default the number of processor cores. Components of a
         large domain are meshed side by side; the mesh does not depend on it.
+    layers : mapping of str to Layers, optional
+        Boundary layers along named outer boundaries; see `Layers`.
 
     Raises
     ------
@@ -64,7 +67,8 @@ class DelaunayRefinement:
     shell (see `csgmesh.domain.input_angles`), may have smaller angles: along two segments that
     leave a vertex at a small angle, new vertices lie on common circles around it, and the edges
     between them are left alone. Edges a few units in the last place long are not divided.
-    With `improve` the triangulation is not Delaunay in places.
+    With `improve` the triangulation is not Delaunay in places. With `layers` there is no bound on
+    angles: layers are as thin as asked for.
 
     Termination
     -----------
@@ -101,6 +105,7 @@ class DelaunayRefinement:
     max_points: int = 10**7
     improve: bool = False
     threads: int | None = None
+    layers: Mapping[str, Layers] = field(default_factory=dict, hash=False)
 
     def __post_init__(self) -> None:
         angle_rule = (
@@ -120,6 +125,8 @@ class DelaunayRefinement:
         }
         for name, value in checked.items():
             object.__setattr__(self, name, value)
+
+        checked_layers(self.layers)
 
     def generate(self, domain: Pslg, size: Any = None, progress: Progress | None = None) -> Mesh:
         """Mesh a domain.
@@ -148,6 +155,14 @@ class DelaunayRefinement:
             If the size is not positive and finite somewhere, or names nothing.
         """
         wanted = resolve(size, domain)
+        if self.layers:
+            info = {"method": "DelaunayRefinement", "options": self._options()}
+            inside = replace(self, layers={})
+
+            def mesh_inside(inner: Pslg) -> Mesh:
+                return inside.generate(inner, size, progress)
+
+            return with_layers(domain, self.layers, wanted, mesh_inside, info)
         limits = self.min_angle, self.gradation, min(self.max_points, MOST_POINTS)
         parts = parts_of(domain, wanted, self.max_points, progress)
         if len(parts) > 1:
@@ -168,6 +183,11 @@ class DelaunayRefinement:
         uniform = wanted.uniform if wanted is not None else None
         return optimise(mesh, uniform, progress=progress) if self.improve else mesh
 
+    def _options(self) -> dict[str, object]:
+        # The mesh does not depend on the number of threads, and so says nothing of it.
+        silent = {"threads"} if self.layers else {"threads", "layers"}
+        return {name: value for name, value in vars(self).items() if name not in silent}
+
     def _mesh(self, run: Meshing) -> Mesh:
         run.refiner.publish()
         return assemble(run.work, self._info([run], len(run.domain.points)))
@@ -180,12 +200,10 @@ class DelaunayRefinement:
         return join(domain, together.parts, works, info, threads)
 
     def _info(self, runs: Sequence[Meshing], n_given: int) -> dict[str, object]:
-        # The mesh does not depend on the number of threads, and so says nothing of it.
-        options = {name: value for name, value in vars(self).items() if name != "threads"}
         return {
             "method": "DelaunayRefinement",
             "min_angle": self.min_angle,
-            "options": options,
+            "options": self._options(),
             "n_steiner": sum(run.work.n_points for run in runs) - n_given,
             "n_sharp_corners": sum(int((run.refiner.radius > 0).sum()) for run in runs),
             "n_given_up": sum(int(run.refiner.count[7]) for run in runs),

@@ -96,8 +96,8 @@ class Structured:
     cells: Literal["quad", "triangle"] = "quad"
     corners: Sequence[Sequence[float]] | None = None
     sides: Sequence[str] | None = None
-    counts: Mapping[str, int] = field(default_factory=dict)
-    spacing: Mapping[str, Any] = field(default_factory=dict)
+    counts: Mapping[str, int] = field(default_factory=dict, hash=False)
+    spacing: Mapping[str, Any] = field(default_factory=dict, hash=False)
     max_points: int = 10**7
 
     def __post_init__(self) -> None:

@@ -1,1 +1,0 @@
-"""Kernels that turn edges until a triangulation is Delaunay."""

@@ -1,1 +1,0 @@
-"""Kernels of linear trees and of the meshes made from them."""
