@@ -78,6 +78,7 @@ _HOME = {
         "PerRegion",
         "QuadPairing",
         "Structured",
+        "Sweep",
     ),
     "csgmesh.pipeline": ("check", "generate"),
     "csgmesh.size": (
@@ -146,6 +147,7 @@ __all__ = [
     "SizeError",
     "SizeField",
     "Structured",
+    "Sweep",
     "Tetrahedron",
     "Torus",
     "Triangle",
@@ -235,6 +237,7 @@ if TYPE_CHECKING:
         PerRegion,
         QuadPairing,
         Structured,
+        Sweep,
     )
     from csgmesh.pipeline import check, generate
     from csgmesh.size import (

@@ -89,18 +89,23 @@ def generate(
     domain = evaluate(shape, deviation=deviation, snap=snap)
     if progress is not None:
         progress("evaluate", 1, 1)
-    if domain.dim != 2:
-        raise InputError(
-            f"{type(mesher).__name__} meshes domains in the plane; got a solid, which csgmesh can "
-            "evaluate but not mesh yet"
-        )
+    _refuse_other_dimension(mesher, domain.dim)
     mesh = mesher.generate(domain, size, progress)
-    if domain.periodic and not mesh.periodic:
+    if domain.dim == 2 and domain.periodic and not mesh.periodic:
         raise MeshingError(
             f"{type(mesher).__name__} does not match the vertices of periodic sides; "
             "DelaunayRefinement and ConstrainedDelaunay do"
         )
     return mesh
+
+
+def _refuse_other_dimension(mesher: Mesher, dim: int) -> None:
+    if getattr(mesher, "dim", 2) != dim:
+        places = {2: "the plane", 3: "space"}
+        raise InputError(
+            f"{type(mesher).__name__} meshes domains in {places[5 - dim]}; this one lies in "
+            f"{places[dim]}" + ("; Sweep meshes extrusions and revolutions" if dim == 3 else "")
+        )
 
 
 def check(mesh: Mesh, shape: Any = None) -> Certificate:
@@ -130,11 +135,25 @@ def check(mesh: Mesh, shape: Any = None) -> Certificate:
 
     if not isinstance(mesh, Mesh):
         raise InputError(f"check needs a Mesh, as generate returns; got {type(mesh).__name__}")
+    if mesh.dim == 3:
+        return _check_space(mesh, shape)
     if shape is None:
         return verify(mesh)
     reference = _reference(mesh, shape)
     contains = reference.oracle.region if reference.oracle is not None else None
     return verify(mesh, reference, contains)
+
+
+def _check_space(mesh: Mesh, shape: Any) -> Certificate:
+    from csgmesh.measures.space.certificate import check_space
+
+    if shape is None:
+        return check_space(mesh)
+    reference = evaluate(shape)
+    if reference.dim != 3:
+        raise InputError(f"check: the mesh is in space, the shape in the plane; got {shape!r}")
+    contains = reference.oracle.region if reference.oracle is not None else None
+    return check_space(mesh, reference, contains)
 
 
 def _reference(mesh: Mesh, shape: Any) -> Pslg:

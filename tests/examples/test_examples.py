@@ -52,6 +52,17 @@ def test_plate(run):
     assert set(meshio.read(folder / "plate.msh").field_data) >= PLATE
 
 
+def test_pulley(run):
+    printed, folder = run("pulley")
+    assert "the mesh is valid" in printed
+    check_picture(folder / "pulley.png")
+    mesh = cm.read(folder / "pulley.msh")
+    seat = mesh.points[mesh.boundary_points("pulley.side.groove")]
+    radius = np.hypot(*seat[:, :2].T)
+    # On the torus that the groove sweeps: its circle about (3, 0.5) has the radius 0.4.
+    np.testing.assert_allclose(np.hypot(radius - 3, seat[:, 2] - 0.5), 0.4, atol=1e-12)
+
+
 def test_bracket(run):
     printed, folder = run("bracket")
     assert "the mesh is valid" in printed

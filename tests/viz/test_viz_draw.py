@@ -153,7 +153,7 @@ def test_bad_options(square, options, said):
 
 
 def test_bad_input(tmp_path, square):
-    with pytest.raises(cm.InputError, match="draw knows shapes, Pslg and Mesh; got str"):
+    with pytest.raises(cm.InputError, match="draw knows shapes, Pslg, Plc and Mesh; got str"):
         cm.draw("plate")
     with pytest.raises(cm.InputError, match="needs a Mesh; got Disk"):
         cm.draw(cm.Disk((0, 0), 1), color="min_angle")
@@ -179,7 +179,9 @@ def test_notebooks_show_svg(monkeypatch, rock, square):
     svg = FakeFormatter()
     display = types.SimpleNamespace(formatters={"image/svg+xml": svg})
     shell = types.SimpleNamespace(display_formatter=display)
-    monkeypatch.setitem(sys.modules, "IPython", types.SimpleNamespace(get_ipython=lambda: shell))
+    # matplotlib asks a loaded IPython for its version.
+    fake = types.SimpleNamespace(get_ipython=lambda: shell, version_info=(9, 0))
+    monkeypatch.setitem(sys.modules, "IPython", fake)
     assert notebook.register_if_active()
     for x in (rock, rock.shape, cm.Disk((0, 0), 1), cm.evaluate(cm.Disk((0, 0), 1)), square):
         keys = [(c.__module__, c.__name__) for c in type(x).__mro__]
@@ -209,7 +211,7 @@ import csgmesh
 print(*sorted(found), "matplotlib" in sys.modules)
 """
     run = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
-    assert run.stdout.split() == ["Embed", "Mesh", "Pslg", "Regions", "Shape", "False"]
+    assert run.stdout.split() == ["Embed", "Mesh", "Plc", "Pslg", "Regions", "Shape", "False"]
 
 
 def test_edges_are_drawn_though_most_cells_crowd_in_a_corner():

@@ -22,6 +22,7 @@ import numpy as np
 from csgmesh.boundary.coincidence import classes, names_of_facets
 from csgmesh.boundary.facets import Facets, facets
 from csgmesh.boundary.projection import project_vertices
+from csgmesh.boundary.sweeps import swept_domain
 from csgmesh.boundary.touching import Surface, settle
 from csgmesh.csg import Embed, Regions
 from csgmesh.csg.primitives.box import Box
@@ -98,7 +99,11 @@ def evaluate_solid(shape: Any, deviation: float | None, snap: float | None) -> P
     names = names_of_facets(
         points, triangles, surface, of_class, member, stock.leaf, stock.parts, program, frame
     )
-    marker, table = marker_table(names)
+    # Entries in the order of the tree, whatever order facets come in.
+    place = {n: k for k, n in enumerate(n for leaf in program.leaves for n in leaf.names)}
+    _, table = marker_table(sorted(names, key=lambda entry: [place[n] for n in entry]))
+    number_of = {entry: k for k, entry in enumerate(table)}
+    marker = np.array([number_of[entry] for entry in names], np.int64)
     used, number = np.unique(of_class[surface], return_inverse=True)
     exact = stock.surfaces[used].transformed(frame.scale * np.eye(3), frame.centre)
     return Plc.build(
@@ -114,6 +119,7 @@ def evaluate_solid(shape: Any, deviation: float | None, snap: float | None) -> P
         snap=user_snap,
         report=report,
         oracle=program,
+        sweep=swept_domain(program, deviation),
     )
 
 

@@ -12,6 +12,7 @@ from csgmesh.domain.names import find_markers
 from csgmesh.domain.pslg import Oracle
 from csgmesh.domain.report import Report
 from csgmesh.domain.surfaces import Surfaces
+from csgmesh.domain.sweep import SweptDomain
 
 
 @dataclass(frozen=True, eq=False, init=False)
@@ -41,6 +42,8 @@ class Plc:
         Distance below which points were merged.
     report : Report
     oracle : Oracle or None
+    sweep : SweptDomain or None
+        What sweeps the domain, if a planar one does.
     """
 
     points: np.ndarray
@@ -55,6 +58,7 @@ class Plc:
     snap: float
     report: Report
     oracle: Oracle | None
+    sweep: SweptDomain | None
 
     @classmethod
     def build(cls, **values: Any) -> Plc:

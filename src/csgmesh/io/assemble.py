@@ -14,12 +14,12 @@ from pathlib import Path
 import numpy as np
 
 from csgmesh.errors import FileFormatError, InputError
+from csgmesh.io.assemble_space import INNER, OUTER, dimension, space_mesh
 from csgmesh.io.sides import missing_edges, oriented_edges
 from csgmesh.mesh import KINDS, Mesh
 from csgmesh.mesh.lagrange import lattice
 
-#: Names of sides that the file does not name: outer ones, and those between two regions.
-OUTER, INNER = "boundary", "interface"
+__all__ = ["INNER", "OUTER", "Listing", "Numbered"]
 
 
 class Numbered:
@@ -83,10 +83,6 @@ class Listing:
         if kind not in KINDS:
             known = ", ".join(KINDS)
             raise FileFormatError(f"{self.path}: cells of kind {kind!r}; known are {known}")
-        if KINDS[kind].dim == 3:
-            raise FileFormatError(
-                f"{self.path}: {len(rows)} cells of kind {kind!r}; only plane meshes can be read"
-            )
         bad = (rows < 0) | (rows >= len(self.points))
         if bad.any():
             at = int(np.argmax(bad.any(axis=1)))
@@ -96,9 +92,13 @@ class Listing:
             )
         self.blocks.setdefault(kind, []).append((rows, tags))
 
+    def of_dim(self, dim: int) -> tuple[dict[str, np.ndarray], dict[str, np.ndarray]]:
+        """Entities of a dimension and their numbers, by kind."""
+        return _of_dim(self, dim)
+
     def mesh(self) -> Mesh:
         """The mesh; see the module."""
-        return _mesh(self)
+        return space_mesh(self) if dimension(self.blocks) == 3 else _mesh(self)
 
 
 def _mesh(listing: Listing) -> Mesh:

@@ -10,6 +10,7 @@ import numpy as np
 
 from csgmesh.errors import FileFormatError, InputError
 from csgmesh.io.assemble import Listing
+from csgmesh.io.assemble_space import dimension
 from csgmesh.io.members import members
 from csgmesh.mesh import KINDS, Mesh
 from csgmesh.mesh.lagrange import EQUISPACED
@@ -97,9 +98,10 @@ def from_meshio(given: meshio.Mesh, path: Path | str = "the meshio mesh") -> Mes
     ('boundary',)
     """
     listing = Listing(Path(path), np.asarray(given.points))
+    dim = dimension([block.type for block in given.cells])
     region_tags, marker_tags = _tags(given, listing)
     for number, block in enumerate(given.cells):
-        tags = region_tags[number] if _is_cell(block) else marker_tags[number]
+        tags = region_tags[number] if _is_cell(block, dim) else marker_tags[number]
         listing.add(block.type, np.asarray(block.data, np.int64), tags)
     for name, points in given.point_sets.items():
         rows = np.asarray(points, np.int64).reshape(-1, 1)
@@ -141,15 +143,16 @@ def _tags(given: Any, listing: Listing) -> tuple[list[np.ndarray], list[np.ndarr
     if key is None:
         return none, none
     region_of, marker_of = {}, {}
+    most = dimension([block.type for block in given.cells])
     for name, value in given.field_data.items():
         if np.shape(value) == (2,):
             tag, dim = int(value[0]), int(value[1])
-            if dim == 2:
+            if dim == most:
                 region_of[tag] = listing.regions.of(name)
             else:
                 marker_of[tag] = listing.markers.of((name,))
     tags = _integers(given.cell_data[key])
-    is_cell = [_is_cell(block) for block in given.cells]
+    is_cell = [_is_cell(block, most) for block in given.cells]
     pairs = list(zip(tags, is_cell, none, strict=True))
     regions = [_named(t, region_of, listing.region_number, 1) if c else e for t, c, e in pairs]
     markers = [e if c else _named(t, marker_of, listing.marker_number, 1) for t, c, e in pairs]
@@ -162,6 +165,7 @@ def _tags_from_sets(
     region = [np.full(n, -1) for n in lengths]
     combination = [np.zeros(n, np.int64) for n in lengths]
     names: list[tuple[str, ...]] = [()]
+    dim = dimension([block.type for block in given.cells])
     for name, parts in sets.items():
         for block, found in enumerate(parts[: len(lengths)]):
             if found is None or not len(found):
@@ -169,7 +173,7 @@ def _tags_from_sets(
             found = np.asarray(found, np.int64)
             if found.min() < 0 or found.max() >= lengths[block]:
                 raise FileFormatError(f"{listing.path}: set {name!r} has members outside its block")
-            if _is_cell(given.cells[block]):
+            if _is_cell(given.cells[block], dim):
                 free = found[region[block][found] < 0]
                 region[block][free] = listing.regions.of(name)
             else:
@@ -195,8 +199,8 @@ def _combined(
     ]
 
 
-def _is_cell(block: Any) -> bool:
-    return block.type in KINDS and KINDS[block.type].dim >= 2
+def _is_cell(block: Any, dim: int) -> bool:
+    return block.type in KINDS and KINDS[block.type].dim >= dim
 
 
 def _integers(parts: Any) -> list[np.ndarray]:

@@ -26,6 +26,7 @@ import numpy as np
 
 from csgmesh.errors import FileFormatError
 from csgmesh.io.assemble import INNER, OUTER, Listing
+from csgmesh.io.assemble_space import dimension
 from csgmesh.io.msh_parse import FROM_GMSH, GMSH_TYPE, Entity, MshContent, is_version_4_1, parse
 from csgmesh.io.msh_periodic import links, pairs
 from csgmesh.mesh import KINDS, Mesh
@@ -71,19 +72,20 @@ def read(path: Path) -> Mesh:
         return read_foreign(path)
     found = parse(path, data)
     listing = Listing(path, found.points)
+    most = dimension([block.kind for block in found.elements])
     for dim, tag in sorted(found.names):
-        if dim == 2:
+        if dim == most:
             listing.regions.of(found.names[dim, tag])
     for dim, entity in sorted(found.physical, key=lambda key: (-key[0], key[1])):
-        if dim < 2:
+        if dim < most:
             listing.markers.of(_boundary(found, dim, entity))
     rows_of: dict[str, list[tuple[np.ndarray, np.ndarray, np.ndarray]]] = {}
     for block in found.elements:
         if block.kind not in KINDS or KINDS[block.kind].dim != block.dim:
             raise FileFormatError(f"{path}: {block.kind} elements in an entity of dim {block.dim}")
-        if block.dim == 2:
-            tags = found.physical.get((2, block.entity), ())
-            names = [found.names.get((2, tag), f"region{tag}") for tag in tags[:1]]
+        if block.dim == most:
+            tags = found.physical.get((most, block.entity), ())
+            names = [found.names.get((most, tag), f"region{tag}") for tag in tags[:1]]
             number = listing.regions.of(names[0] if names else "")
         else:
             number = listing.markers.of(_boundary(found, block.dim, block.entity))

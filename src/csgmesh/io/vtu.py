@@ -23,6 +23,7 @@ from numpy.typing import ArrayLike
 
 from csgmesh.errors import FileFormatError, InputError
 from csgmesh.io.assemble import Listing
+from csgmesh.io.assemble_space import dimension
 from csgmesh.io.vtk_kinds import VTK_TYPE, kind_of, vtk_order
 from csgmesh.io.vtu_parse import Grid, VtuFile
 from csgmesh.mesh import KINDS, Mesh
@@ -96,6 +97,7 @@ def read(path: Path) -> Mesh:
     grid = file.grid()
     listing = Listing(path, grid.points)
     region_of, marker_of = listing.names_in(file.field_data())
+    dim = dimension([kind_of(t, 0) or "" for t in np.unique(grid.types).tolist()])
     starts = np.concatenate([[0], grid.offsets[:-1]]) if len(grid.offsets) else grid.offsets
     widths = grid.offsets - starts
     for number, width in dict.fromkeys(zip(grid.types.tolist(), widths.tolist(), strict=True)):
@@ -109,7 +111,7 @@ def read(path: Path) -> Mesh:
         order = vtk_order(kind)
         if order is not None:
             rows = rows[:, np.argsort(order)]
-        if KINDS[kind].dim >= 2:
+        if KINDS[kind].dim >= dim:
             tags = _numbers(grid, "region", which, region_of, listing.region_number)
         else:
             tags = _numbers(grid, "marker", which, marker_of, listing.marker_number)

@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, fields, replace
+from typing import Any
 
 import numpy as np
 
 from csgmesh.errors import InputError
+from csgmesh.measures.histogram import histogram
 from csgmesh.measures.jacobians import curved_areas, jacobian_bounds
 from csgmesh.measures.shapes import CellMeasures, measure_cells
+from csgmesh.measures.space.quality import space_quality
 from csgmesh.mesh import KINDS, Mesh
 from csgmesh.mesh.nodes import node_family
-
-_BAR = 40
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -85,9 +86,9 @@ class Quality:
             return lines[0]
         lines += [f"area {self.total_area:.10g}", "", *self._table(), ""]
         if "triangle" in self.n_by_kind or len(self.n_by_kind) > 1:
-            lines += ["smallest angle of the cells", *_histogram(self.min_angle, 0.0, 90.0, 9)]
+            lines += ["smallest angle of the cells", *histogram(self.min_angle, 0.0, 90.0, 9)]
         else:
-            lines += ["scaled Jacobian", *_histogram(self.scaled_jacobian, 0.0, 1.0, 10)]
+            lines += ["scaled Jacobian", *histogram(self.scaled_jacobian, 0.0, 1.0, 10)]
         return "\n".join(lines)
 
     def _table(self) -> list[str]:
@@ -109,23 +110,23 @@ _LABELS = {
 }
 
 
-def quality(mesh: Mesh) -> Quality:
-    """Measure the cells of a plane mesh.
+def quality(mesh: Mesh) -> Any:
+    """Measure the cells of a mesh.
 
     Parameters
     ----------
     mesh : Mesh
-        Of triangles, quads or both.
+        Of the plane, or of space.
 
     Returns
     -------
-    Quality
+    Quality or SpaceQuality
         Arrays with an entry a cell, extremes, and a printable table.
 
     Raises
     ------
     InputError
-        If the mesh is not plane, or a cell names a point that does not exist.
+        If a cell names a point that does not exist.
 
     Examples
     --------
@@ -147,8 +148,8 @@ def quality(mesh: Mesh) -> Quality:
     """
     if not isinstance(mesh, Mesh):
         raise InputError(f"quality needs a Mesh, as generate returns; got {type(mesh).__name__}")
-    if mesh.dim != 2:
-        raise InputError(f"quality measures plane meshes; this one has dim {mesh.dim}")
+    if mesh.dim == 3:
+        return space_quality(mesh)
     parts = []
     for kind, rows in mesh.cells.items():
         measures = measure_cells(mesh.points, rows[:, : KINDS[kind].n_corners])
@@ -171,18 +172,3 @@ def _of_curved(mesh: Mesh, kind: str, straight: CellMeasures) -> CellMeasures:
     area = curved_areas(nodes, kind, family)
     ratio = jacobian_bounds(nodes, kind, family).ratio
     return replace(straight, area=area, scaled_jacobian=ratio)
-
-
-def _histogram(values: np.ndarray, lo: float, hi: float, n_bins: int) -> list[str]:
-    """Bars of the bins that hold anything and of all between them."""
-    values = np.clip(values[~np.isnan(values)], lo, hi)
-    count, edges = np.histogram(values, n_bins, (lo, hi))
-    used = np.flatnonzero(count)
-    width = max(len(f"{n:,}") for n in count)
-    edge = "{:.3g}".format
-    ends = max(len(edge(e)) for e in edges)
-    return [
-        f"  {edge(edges[i]):>{ends}} to {edge(edges[i + 1]):<{ends}}  {count[i]:>{width + 1},}  "
-        + "#" * round(_BAR * count[i] / count.max())
-        for i in range(used[0], used[-1] + 1)
-    ]

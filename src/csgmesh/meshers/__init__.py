@@ -6,6 +6,7 @@ from csgmesh.meshers.layers import Layers
 from csgmesh.meshers.per_region import PerRegion
 from csgmesh.meshers.quad_pairing import QuadPairing
 from csgmesh.meshers.structured import Structured
+from csgmesh.meshers.sweep import Sweep
 from csgmesh.meshers.worst import worst_cells
 
 __all__ = [
@@ -15,5 +16,6 @@ __all__ = [
     "PerRegion",
     "QuadPairing",
     "Structured",
+    "Sweep",
     "worst_cells",
 ]

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from csgmesh.domain.plc import Plc
 from csgmesh.domain.pslg import Pslg
 from csgmesh.errors import FileFormatError, InputError
 from csgmesh.mesh import Mesh
@@ -37,9 +38,11 @@ class Options:
     legend: bool = True
     title: str | None = None
     dpi: float = 150.0
+    view: tuple[float, float] = (-60.0, 25.0)
+    cut: tuple[Any, Any] | None = None
 
 
-def draw(x: object, path: str | os.PathLike[str] | None = None, **options: Any) -> Figure | None:
+def draw(x: Any, path: str | os.PathLike[str] | None = None, **options: Any) -> Figure | None:
     """Draw a shape, a domain or a mesh.
 
     Regions are filled with pale colours, boundaries have strong ones and are named in the legend;
@@ -48,7 +51,7 @@ def draw(x: object, path: str | os.PathLike[str] | None = None, **options: Any) 
 
     Parameters
     ----------
-    x : Shape, Regions, Embed, Periodic, Pslg or Mesh
+    x : Shape, Regions, Embed, Periodic, Pslg, Plc or Mesh
         What to draw; shapes are evaluated first.
     path : str or PathLike, optional
         A ``.png``, ``.svg`` or ``.pdf`` file to write.
@@ -64,6 +67,12 @@ def draw(x: object, path: str | os.PathLike[str] | None = None, **options: Any) 
         Default: counts. An empty string for none.
     dpi : float
         Resolution of a PNG, and of a dense mesh within SVG and PDF; default 150.
+
+    view : (float, float)
+        In space: degrees around the z axis from +x, and above the plane z = 0, that a solid is
+        seen from; default (-60, 25).
+    cut : (point, normal), optional
+        In space: leave out the cells in front of a plane.
 
     Returns
     -------
@@ -89,23 +98,46 @@ def draw(x: object, path: str | os.PathLike[str] | None = None, **options: Any) 
     chosen = Options(**options)
     _check(chosen)
     target = None if path is None else _target(Path(path))
-    scene = _scene(x)
+    from csgmesh.viz.figure import compose
+
+    is_domain = isinstance(x, Pslg)
+    if chosen.color == "min_angle" and not isinstance(x, Mesh):
+        raise InputError(f"draw: color='min_angle' needs a Mesh; got {type(x).__name__}")
+    x = _drawable(x)
+    if x.dim == 3:
+        from csgmesh.viz.space import draw_space
+
+        return _kept(draw_space(x, chosen), target, chosen)
+    _refuse_space_options(options)
+    scene = mesh_scene(x) if isinstance(x, Mesh) else pslg_scene(x, vertices=is_domain)
     values = None
     if chosen.color == "min_angle":
-        if not isinstance(x, Mesh):
-            raise InputError(f"draw: color='min_angle' needs a Mesh; got {type(x).__name__}")
         values = min_angles(scene)
-    from csgmesh.viz.figure import compose, save
+    return _kept(compose(scene, values, chosen), target, chosen)
 
-    figure = compose(scene, values, chosen)
+
+def _kept(figure: Figure, target: tuple[Path, str] | None, options: Options) -> Figure | None:
+    """The figure, or None once it is written."""
+    from csgmesh.viz.figure import save
+
     if target is None:
         return figure
-    save(figure, *target, _METADATA[target[1]], chosen.dpi)
+    save(figure, *target, _METADATA[target[1]], options.dpi)
     return None
+
+
+def _refuse_space_options(options: dict[str, Any]) -> None:
+    for name in ("view", "cut"):
+        if name in options:
+            raise InputError(f"draw: {name} belongs to space; this lies in the plane")
 
 
 def _check(options: Options) -> None:
     check_choice("color", options.color, ("region", "min_angle"), "draw")
+    if np.shape(options.view) != (2,) or not np.isfinite(options.view).all():
+        raise InputError(f"draw: view must be two angles in degrees; got {options.view!r}")
+    if options.cut is not None and np.shape(options.cut) != (2, 3):
+        raise InputError(f"draw: cut must be a point and a normal, each (3,); got {options.cut!r}")
     size = options.figsize
     if size is not None and not (np.shape(size) == (2,) and min(size) > 0):
         raise InputError(f"draw: figsize must be two positive lengths in inches; got {size!r}")
@@ -135,16 +167,13 @@ def _target(path: Path) -> tuple[Path, str]:
     return path, _FORMATS[suffix]
 
 
-def _scene(x: object) -> Scene:
-    if isinstance(x, Mesh):
-        if x.dim != 2:
-            raise InputError(f"draw needs a plane mesh; this one has dim {x.dim}")
-        return mesh_scene(x)
-    if isinstance(x, Pslg):
-        return pslg_scene(x, vertices=True)
+def _drawable(x: Any) -> Any:
+    """A mesh or a domain: shapes are evaluated."""
+    if isinstance(x, Mesh | Pslg | Plc):
+        return x
     from csgmesh.boundary import evaluate
     from csgmesh.csg import Embed, Periodic, Regions, Shape
 
     if not isinstance(x, (Shape, Regions, Embed, Periodic)):
-        raise InputError(f"draw knows shapes, Pslg and Mesh; got {type(x).__name__}")
-    return pslg_scene(evaluate(x), vertices=False)
+        raise InputError(f"draw knows shapes, Pslg, Plc and Mesh; got {type(x).__name__}")
+    return evaluate(x)

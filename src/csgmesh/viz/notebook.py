@@ -12,6 +12,7 @@ from typing import Any
 _DRAWN = (
     ("csgmesh.mesh.mesh", "Mesh"),
     ("csgmesh.domain.pslg", "Pslg"),
+    ("csgmesh.domain.plc", "Plc"),
     ("csgmesh.csg.shape", "Shape"),
     ("csgmesh.csg.regions", "Regions"),
     ("csgmesh.csg.embed", "Embed"),

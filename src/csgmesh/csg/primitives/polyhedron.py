@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 
 from csgmesh.csg import checks
-from csgmesh.csg.polyhedra import crossings_above, face_triangles, oriented_outward
+from csgmesh.csg.polyhedra import face_triangles, oriented_outward
 from csgmesh.csg.solid import Faceted, Solid
+from csgmesh.domain.windings import winding_numbers
 from csgmesh.errors import ShapeError
 
 if TYPE_CHECKING:
@@ -71,7 +72,7 @@ class Polyhedron(Solid):
         return triangles, face
 
     def inside(self, points: np.ndarray) -> np.ndarray:
-        return crossings_above(points, self.points, self._triangles[0]) != 0
+        return winding_numbers(points, self.points, self._triangles[0]) != 0
 
     def support(self, directions: np.ndarray) -> np.ndarray:
         return (directions @ self.points.T).max(axis=1)

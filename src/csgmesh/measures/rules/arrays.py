@@ -44,9 +44,8 @@ def check_indices(case: Case) -> Check:
 def check_points(case: Case) -> Check:
     """No two points are the same, and each belongs to a cell."""
     mesh, rule = case.mesh, "points"
-    x, y = mesh.points.T
-    order = np.lexsort((y, x))
-    same = (np.diff(x[order]) == 0) & (np.diff(y[order]) == 0)
+    order = np.lexsort(mesh.points.T[::-1])
+    same = (np.diff(mesh.points[order], axis=0) == 0).all(axis=1)
     twice = np.sort(order[1:][same])
     failures = offenders(rule, "point", twice, mesh.points[twice], "is|are there twice")
     is_used = np.zeros(mesh.n_points, bool)

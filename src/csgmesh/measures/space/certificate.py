@@ -1,0 +1,338 @@
+"""The certificate of a mesh of space."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from csgmesh.domain.plc import Plc
+from csgmesh.domain.surfaces import PLANE
+from csgmesh.domain.windings import winding_numbers
+from csgmesh.measures.results import Certificate, Check, offenders
+from csgmesh.measures.rules.arrays import check_indices, check_points
+from csgmesh.measures.space.jacobians import least_jacobians
+from csgmesh.measures.space.quality import SpaceQuality, space_quality
+from csgmesh.mesh import KINDS, Mesh
+from csgmesh.mesh.faces import Faces, canonical_faces, faces_of
+from csgmesh.tolerance import AREA_SHARE, ON_CURVE_SHARE, accuracy, coordinate_ulp
+
+#: Points tried against the tree.
+N_SAMPLES = 100_000
+_SEED = 20260117
+
+_NONE = np.zeros(0, np.int64)
+
+
+@dataclass(frozen=True, eq=False)
+class SpaceCase:
+    """A mesh of space under examination, with what is derived from it once."""
+
+    mesh: Mesh
+    domain: Plc | None
+    contains: Callable[[np.ndarray], np.ndarray] | None
+
+    @cached_property
+    def corners(self) -> dict[str, np.ndarray]:
+        """Cells without their mid-side points."""
+        return {kind: rows[:, : KINDS[kind].n_corners] for kind, rows in self.mesh.cells.items()}
+
+    @cached_property
+    def centres(self) -> np.ndarray:
+        """Means of the corners of each cell, (n_cells, 3)."""
+        means = [self.mesh.points[rows].mean(axis=1) for rows in self.corners.values()]
+        return np.concatenate([np.zeros((0, 3)), *means])
+
+    @cached_property
+    def cell_region(self) -> np.ndarray:
+        """Region of each cell, and -1 at last, so that it can be indexed with -1."""
+        return np.concatenate([*self.mesh.cell_region.values(), [-1]]).astype(np.int64)
+
+    @cached_property
+    def faces(self) -> Faces:
+        """Faces of the cells."""
+        return faces_of(self.mesh.cells)
+
+    @cached_property
+    def quality(self) -> SpaceQuality:
+        """Measures of the cells."""
+        return space_quality(self.mesh)
+
+    @cached_property
+    def facets(self) -> tuple[np.ndarray, np.ndarray]:
+        """Corners of each facet in canonical order, (f, 4), and whether it runs that way."""
+        rows, ways = [np.zeros((0, 4), np.int64)], [np.zeros(0, bool)]
+        for kind, facet in self.mesh.facets.items():
+            ordered, forwards = canonical_faces(facet[:, : KINDS[kind].n_corners])
+            rows.append(ordered)
+            ways.append(forwards)
+        return np.concatenate(rows), np.concatenate(ways)
+
+    @cached_property
+    def facet_face(self) -> np.ndarray:
+        """Face that each facet is, -1 for none, (f,)."""
+        return self.faces.find(self.facets[0])
+
+    @cached_property
+    def facet_marker(self) -> np.ndarray:
+        """Marker of each facet, (f,)."""
+        return np.concatenate([_NONE, *self.mesh.facet_marker.values()])
+
+    @cached_property
+    def facet_region(self) -> np.ndarray:
+        """Regions behind and in front of each facet, as the mesh claims, (f, 2)."""
+        return np.concatenate([np.zeros((0, 2), np.int64), *self.mesh.facet_region.values()])
+
+    @cached_property
+    def triangles(self) -> np.ndarray:
+        """Facets cut into triangles with the facets' orientation, and their facets, (t, 4)."""
+        rows, ways = self.facets
+        number = np.arange(len(rows))
+        quad = rows[:, 3] >= 0
+        parts = [
+            np.column_stack([rows[:, [0, 1, 2]], number]),
+            np.column_stack([rows[quad][:, [0, 2, 3]], number[quad]]),
+        ]
+        out = np.concatenate(parts)
+        turned = ~ways[out[:, 3]]
+        out[turned] = out[turned][:, [0, 2, 1, 3]]
+        return out
+
+    @cached_property
+    def tolerance(self) -> float:
+        """How far a vertex may be from its exact surface."""
+        assert self.domain is not None
+        return accuracy(ON_CURVE_SHARE, self.domain.diagonal, self.mesh.points)
+
+    @cached_property
+    def corners_off(self) -> np.ndarray:
+        """How far the corners of each facet are at the most from the surface it names, (f,)."""
+        rows = self.facets[0]
+        return self.off_surfaces(self.mesh.points[np.where(rows < 0, rows[:, :1], rows)])
+
+    def off_surfaces(self, places: np.ndarray) -> np.ndarray:
+        """Largest distance of each facet's places (f, k, 3) from one surface it names, (f,).
+
+        Infinite for facets with names that no surface of the domain has.
+        """
+        domain = self.domain
+        assert domain is not None
+        out = np.full(len(places), np.inf)
+        k = places.shape[1]
+        for marker in np.unique(self.facet_marker).tolist():
+            own = np.flatnonzero(self.facet_marker == marker)
+            names = set(self.mesh.boundary_names[marker]) if marker >= 0 else set()
+            matching = [m for m, entry in enumerate(domain.boundary_names) if set(entry) == names]
+            on = np.isin(domain.facet_marker, matching)
+            flat = places[own].reshape(-1, 3)
+            for s in np.unique(domain.facet_surface[on]).tolist():
+                off = domain.surfaces.distance(np.full(len(flat), s), flat).reshape(-1, k)
+                out[own] = np.minimum(out[own], off.max(axis=1))
+        return out
+
+    def face_places(self, faces: np.ndarray) -> np.ndarray:
+        """Middles of faces, (k, 3)."""
+        return _middles(self.mesh.points, self.faces.points[faces])
+
+    def facet_places(self, facets: np.ndarray) -> np.ndarray:
+        """Middles of facets, (k, 3)."""
+        return _middles(self.mesh.points, self.facets[0][facets])
+
+
+def _middles(points: np.ndarray, rows: np.ndarray) -> np.ndarray:
+    three = points[rows[:, :3]].sum(axis=1)
+    quad = rows[:, 3] >= 0
+    three[quad] += points[rows[quad, 3]]
+    return three / np.where(quad, 4.0, 3.0)[:, None]
+
+
+def check_space(
+    mesh: Mesh,
+    reference: Plc | None = None,
+    contains: Callable[[np.ndarray], np.ndarray] | None = None,
+) -> Certificate:
+    """Check a mesh of space against the domain it must mesh; see `csgmesh.check`."""
+    case = SpaceCase(mesh, mesh.domain if reference is None else reference, contains)  # type: ignore[arg-type]
+    first = check_indices(case)  # type: ignore[arg-type]
+    checks = [first]
+    for name, rule in _RULES:
+        if first.failures:
+            checks.append(Check.skipped(name, "numbers are out of range"))
+        else:
+            checks.append(rule(case))
+    return Certificate(tuple(checks))
+
+
+def _points(case: SpaceCase) -> Check:
+    return check_points(case)  # type: ignore[arg-type]
+
+
+def check_orientation(case: SpaceCase) -> Check:
+    """The Jacobian is positive all over each cell."""
+    rule, bad, before = "orientation", [_NONE], 0
+    for rows in case.corners.values():
+        base = {4: "tetra", 8: "hexahedron", 6: "wedge", 5: "pyramid"}[rows.shape[1]]
+        least = least_jacobians(case.mesh.points, base, rows)
+        bad.append(np.flatnonzero(~(least > 0.0)) + before)
+        before += len(rows)
+    numbers = np.concatenate(bad)
+    complaint = "is|are not positively oriented all over"
+    failures = offenders(rule, "cell", numbers, case.centres[numbers], complaint)
+    return Check.of(rule, before, failures)
+
+
+def check_conforming(case: SpaceCase) -> Check:
+    """Each face has one cell, or two on different sides."""
+    rule, faces = "conforming", case.faces
+    crowded = np.flatnonzero(faces.count > 2)
+    failures = offenders(
+        rule, "face", crowded, case.face_places(crowded), "has|have more than two cells"
+    )
+    folded = np.flatnonzero((faces.count == 2) & (faces.n_behind != 1))
+    failures += offenders(
+        rule, "face", folded, case.face_places(folded), "has|have two cells on the same side"
+    )
+    return Check.of(rule, len(faces.points), failures)
+
+
+def check_facets(case: SpaceCase) -> Check:
+    """The facets are the faces between different regions, with the right regions beside them."""
+    rule, faces = "facets", case.faces
+    at = case.facet_face
+    stray = np.flatnonzero(at < 0)
+    failures = offenders(rule, "facet", stray, case.facet_places(stray), "is|are no face of a cell")
+    times = np.bincount(at[at >= 0], minlength=len(faces.points))
+    twice = np.flatnonzero(times > 1)
+    failures += offenders(
+        rule, "face", twice, case.face_places(twice), "is|are listed as a facet more than once"
+    )
+    behind, ahead = case.cell_region[faces.behind], case.cell_region[faces.ahead]
+    missing = np.flatnonzero((behind != ahead) & (times == 0))
+    failures += offenders(
+        rule, "face", missing, case.face_places(missing), "bounds|bound a region without a facet"
+    )
+    known = np.flatnonzero(at >= 0)
+    way = case.facets[1][known]
+    sides = np.column_stack([behind[at[known]], ahead[at[known]]])
+    sides[~way] = sides[~way, ::-1]
+    wrong = known[(sides != case.facet_region[known]).any(axis=1)]
+    failures += offenders(
+        rule,
+        "facet",
+        wrong,
+        case.facet_places(wrong),
+        "has|have other regions than the cells beside",
+    )
+    return Check.of(rule, len(at), failures)
+
+
+def check_names(case: SpaceCase) -> Check:
+    """Each facet's corners lie on an exact surface of the domain that carries all its names."""
+    rule = "names"
+    if case.domain is None:
+        return Check.skipped(rule, "no domain to compare with")
+    domain, mesh = case.domain, case.mesh
+    rows = case.facets[0]
+    numbers = np.flatnonzero(~(case.corners_off <= case.tolerance))
+    failures = offenders(
+        rule,
+        "facet",
+        numbers,
+        case.facet_places(numbers),
+        "does|do not lie on the exact surfaces of its names",
+    )
+    missing = [n for n in domain.names if n not in mesh.names]
+    if missing:
+        failures += offenders(
+            rule,
+            "name",
+            np.arange(len(missing)),
+            np.zeros((len(missing), 0)),
+            "of the domain is|of the domain are missing from the mesh",
+            ", ".join(missing),
+        )
+    return Check.of(rule, len(rows), failures)
+
+
+def check_volume(case: SpaceCase) -> Check:
+    """The cells of each region fill the domain's volume, to the bound on chords."""
+    rule, points = "volume", case.mesh.points
+    total = case.quality.total_volume
+    if case.domain is None:
+        return Check.skipped(rule, f"no domain to compare with; the cells fill {total:.12g}")
+    domain = case.domain
+    exact = domain.volumes()
+    n = len(case.mesh.region_names)
+    given = np.bincount(case.cell_region[:-1], case.quality.volume, n)
+    # Each facet may be off by its distance from the exact surface all over its area.
+    slack = float((_sags(case)[case.triangles[:, 3]] * _areas(case)).sum())
+    bent = domain.surfaces.kind[domain.facet_surface] != PLANE
+    slack += domain.deviation * float(domain.facet_areas()[bent].sum())
+    slack += AREA_SHARE * domain.diagonal**3 + coordinate_ulp(points) * float(_areas(case).sum())
+    number = {name: k for k, name in enumerate(domain.region_names)}
+    bad = [
+        k
+        for k, name in enumerate(case.mesh.region_names)
+        if name not in number or not abs(given[k] - exact[number[name]]) <= slack
+    ]
+    failures = offenders(
+        rule,
+        "region",
+        np.array(bad, np.int64),
+        np.zeros((len(bad), 0)),
+        "has|have another volume than in the domain",
+        f"{given[bad[0]]:.10g}" if bad else "",
+    )
+    note = f"cells fill {total:.12g}, the domain has {exact.sum():.12g}, chords allow {slack:.3g}"
+    return Check.of(rule, case.mesh.n_cells, failures, note)
+
+
+def _areas(case: SpaceCase) -> np.ndarray:
+    a, b, c = (case.mesh.points[case.triangles[:, k]] for k in range(3))
+    return 0.5 * np.asarray(np.sqrt((np.cross(b - a, c - a) ** 2).sum(axis=1)))
+
+
+def _sags(case: SpaceCase) -> np.ndarray:
+    """A bound of each facet's distance from its exact surface, (f,)."""
+    middles = case.facet_places(np.arange(len(case.facets[0])))
+    off = case.off_surfaces(middles[:, None])
+    # The middle of a facet is where it is furthest off, but for thin ones. A facet that has corners
+    # elsewhere fails for that, and must not excuse a wrong volume as well.
+    return np.where(case.corners_off <= case.tolerance, 2.0 * off, 0.0)
+
+
+def check_samples(case: SpaceCase) -> Check:
+    """Random points lie inside the facets if they lie in the shape, boundaries apart."""
+    rule = "samples"
+    if case.contains is None or case.domain is None:
+        return Check.skipped(rule, "no shape to compare with")
+    low, high = case.domain.bounds()
+    points = low + (high - low) * np.random.default_rng(_SEED).random((N_SAMPLES, 3))
+    outer = case.triangles[(case.facet_region[case.triangles[:, 3]] < 0).any(axis=1)]
+    inside = winding_numbers(points, case.mesh.points, outer[:, :3]) != 0
+    wanted = np.asarray(case.contains(points)) >= 0
+    differ = np.flatnonzero(inside != wanted)
+    near = 2.0 * (float(_sags(case).max(initial=0.0)) + case.domain.deviation)
+    surfaces = case.domain.surfaces
+    off = np.full(len(differ), np.inf)
+    for s in range(len(surfaces)):
+        np.minimum(off, surfaces.distance(np.full(len(differ), s), points[differ]), out=off)
+    bad = differ[off > near]
+    failures = offenders(
+        rule, "sample", bad, points[bad], "lies|lie in the mesh but not in the shape, or vice versa"
+    )
+    note = f"{len(differ) - len(bad)} within the deviation of a boundary"
+    return Check.of(rule, N_SAMPLES, failures, note)
+
+
+_RULES: tuple[tuple[str, Callable[[SpaceCase], Check]], ...] = (
+    ("points", _points),
+    ("orientation", check_orientation),
+    ("conforming", check_conforming),
+    ("facets", check_facets),
+    ("names", check_names),
+    ("volume", check_volume),
+    ("samples", check_samples),
+)
