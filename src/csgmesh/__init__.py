@@ -77,6 +77,7 @@ _HOME = {
         "Layers",
         "PerRegion",
         "QuadPairing",
+        "Quadtree",
         "Structured",
         "Sweep",
     ),
@@ -90,6 +91,15 @@ _HOME = {
         "SizeField",
         "UniformSize",
         "minimum",
+    ),
+    "csgmesh.triangulation": (
+        "Voronoi",
+        "delaunay",
+        "delaunay_balls",
+        "flip_to_delaunay",
+        "minimum_spanning_tree",
+        "nearest_neighbours",
+        "voronoi",
     ),
     "csgmesh.viz": ("draw",),
 }
@@ -137,6 +147,7 @@ __all__ = [
     "Primitive",
     "Pslg",
     "QuadPairing",
+    "Quadtree",
     "Quality",
     "RegionSize",
     "Regions",
@@ -153,16 +164,22 @@ __all__ = [
     "Triangle",
     "UnboundedDomainError",
     "UniformSize",
+    "Voronoi",
     "check",
+    "delaunay",
+    "delaunay_balls",
     "difference",
     "draw",
     "elevate",
     "evaluate",
+    "flip_to_delaunay",
     "from_meshio",
     "generate",
     "intersection",
     "load",
     "minimum",
+    "minimum_spanning_tree",
+    "nearest_neighbours",
     "quality",
     "read",
     "refine",
@@ -171,6 +188,7 @@ __all__ = [
     "to_meshio",
     "to_skfem",
     "union",
+    "voronoi",
     "write",
 ]
 
@@ -236,6 +254,7 @@ if TYPE_CHECKING:
         Layers,
         PerRegion,
         QuadPairing,
+        Quadtree,
         Structured,
         Sweep,
     )
@@ -249,6 +268,15 @@ if TYPE_CHECKING:
         SizeField,
         UniformSize,
         minimum,
+    )
+    from csgmesh.triangulation import (
+        Voronoi,
+        delaunay,
+        delaunay_balls,
+        flip_to_delaunay,
+        minimum_spanning_tree,
+        nearest_neighbours,
+        voronoi,
     )
     from csgmesh.viz import draw
 

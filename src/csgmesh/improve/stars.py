@@ -119,4 +119,5 @@ class Stars:
         if "line" in self.mesh.facets:
             intervals = {"line": self.arrays.interval.reshape(-1, 2)}
         points = self.arrays.xy.reshape(-1, 2)
-        return replace(self.mesh, points=points, facet_interval=intervals)
+        info = {**self.mesh.info, "delaunay": False}
+        return replace(self.mesh, points=points, facet_interval=intervals, info=info)

@@ -131,6 +131,7 @@ class Workpiece:
             points=arrays.xy.reshape(-1, 2),
             cells={"triangle": arrays.origin.reshape(-1, 3)},
             facet_interval=intervals,
+            info={**self.mesh.info, "delaunay": False},
         )
 
 

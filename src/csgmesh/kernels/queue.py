@@ -20,7 +20,7 @@ from .pointers import HELPER, bits
 Queue = namedtuple("Queue", "head tail items state")
 
 N_BUCKETS = 1024
-#: Bucket of an edge as long as the domain; four buckets to each factor of two in the square.
+#: Bucket of an edge as long as the domain; two buckets to each factor of two in the square.
 DIAGONAL_BUCKET = 900
 LAST = np.int64(N_BUCKETS - 1)
 
@@ -28,7 +28,7 @@ LAST = np.int64(N_BUCKETS - 1)
 @njit(**HELPER)
 def bucket(square):
     """Bucket of a squared length, given as a share of the squared diagonal."""
-    b = (bits(square) >> 50) - (4092 - DIAGONAL_BUCKET)
+    b = (bits(square) >> 51) - (2046 - DIAGONAL_BUCKET)
     return min(max(b, 0), LAST)
 
 

@@ -28,7 +28,7 @@ from .background import Background, background_size, interpolated
 from .curves import Subsegments
 from .pointers import ENTRY, HELPER, pointer
 from .queue import Queue, pop, push
-from .splitting import can_split, encroached, is_poor, queue_fan, split, want_split
+from .splitting import can_split, encroached, is_poor, lens, queue_fan, split, want_split
 from .triangulation import (
     BUDGET,
     DONE,
@@ -52,10 +52,13 @@ def refused(net, subs, aim, n_ring, x, y):
     Those that can be split go on the stack. Returns 0 (no), 1 (yes), 2 (none can be split).
     """
     answer = 0
+    edge = lens(aim)
     for i in range(n_ring):
         if net.ring_sub[i] >= 0:
             o = net.ring[i]
-            if encroached(net.xy, net.origin[o], net.origin[following(o)], x, y):
+            a = net.origin[o]
+            b = net.origin[following(o)]
+            if encroached(net.xy, a, b, x, y, edge):
                 if want_split(net, subs, aim, net.twin[o]):
                     answer = 1
                 elif answer == 0:

@@ -5,6 +5,7 @@ from csgmesh.meshers.delaunay_refinement import DelaunayRefinement
 from csgmesh.meshers.layers import Layers
 from csgmesh.meshers.per_region import PerRegion
 from csgmesh.meshers.quad_pairing import QuadPairing
+from csgmesh.meshers.quadtree import Quadtree
 from csgmesh.meshers.structured import Structured
 from csgmesh.meshers.sweep import Sweep
 from csgmesh.meshers.worst import worst_cells
@@ -15,6 +16,7 @@ __all__ = [
     "Layers",
     "PerRegion",
     "QuadPairing",
+    "Quadtree",
     "Structured",
     "Sweep",
     "worst_cells",

@@ -18,7 +18,7 @@ def refined_info(mesh: Mesh, method: str, has_green: bool) -> dict[str, Any]:
 
     ``macro_min_angle`` is the bound of the mesh that was refined first.
     """
-    info = {**mesh.info, "refinement": method}
+    info = {**mesh.info, "refinement": method, "delaunay": False}
     macro = mesh.info.get("macro_min_angle", mesh.info.get("min_angle"))
     if mesh.info.get("refinement", method) != method:
         macro = mesh.info.get("min_angle")

@@ -1,0 +1,1 @@
+"""Kernels that turn edges until a triangulation is Delaunay."""

@@ -1,0 +1,1 @@
+"""Kernels of linear trees and of the meshes made from them."""

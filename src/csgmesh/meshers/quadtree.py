@@ -1,0 +1,148 @@
+"""Hierarchical meshing of the plane: a quadtree, templates inside, a strip along the boundary."""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass
+from typing import Any
+
+import numpy as np
+
+from csgmesh.domain.pslg import Pslg
+from csgmesh.errors import BudgetError, InputError
+from csgmesh.improve import optimise
+from csgmesh.mesh import Mesh
+from csgmesh.meshers.quadtree_run import Run
+from csgmesh.meshers.workspace import Progress
+from csgmesh.options import check_choice
+from csgmesh.size import resolve
+
+CELLS = ("triangle",)
+#: Smallest angle of triangles that is promised, degrees (Bern, Eppstein, Gilbert).
+PROMISED = 18.4
+#: Smallest angle below which the tree is refined around a triangle, degrees.
+WANTED = 20.0
+#: Growth of sizes in a tree whose neighbours differ by one level.
+GROWTH = 0.5
+
+
+@dataclass(frozen=True)
+class Quadtree:
+    """Cells from a quadtree: right-angled templates inside, a strip fitted to the boundary.
+
+    The tree is refined until its leaves are as small as the size, the curves' chords and the gaps
+    between features ask for, and balanced. Leaves at some distance from every boundary are cut by
+    templates, two triangles a leaf, or a fan around the centre where neighbours are smaller.
+    Boundaries get vertices on their exact curves as far apart as the leaves there are large. The
+    strip between, one or two leaves wide, is triangulated on these vertices and no others; then its
+    vertices move and its edges turn until the smallest angles are as large as they can be.
+
+    Parameters
+    ----------
+    cells : {"triangle"}
+        What to make.
+    gradation : float, default 0.5
+        Bound on the growth of sizes per unit of length: 0.5 or more lets neighbouring leaves
+        differ by one level, 0.25 puts two leaves of a size in a row, and so on.
+    max_points : int, default 10**7
+        Bound on the number of leaves, which is about that of the points.
+    improve : bool, default False
+        Whether to raise the smallest angles of the whole mesh afterwards, to 39 degrees where the
+        boundary lets them.
+
+    Raises
+    ------
+    InputError
+        If an option is out of range.
+
+    Guarantees
+    ----------
+    No angle of a triangle is smaller than 18.4 degrees, except as below; inside they are 45 and 90
+    degrees. Every corner, junction and end of a path is a vertex; every curve is a union of edges
+    whose vertices lie on it. Regions and names are those of the domain. The same input gives the
+    same bytes.
+
+    Exceptions
+    ----------
+    Cells with a vertex at the apex of an input angle below 60 degrees, or within its protected
+    shell (see `csgmesh.domain.input_angles`), may have smaller angles. A leaf is a power of two of
+    the root, so that with a size that varies edges are between half and 1.6 times as long as asked
+    for. A point in the middle of a smooth curve, put there when it was flattened, is not kept.
+
+    Termination
+    -----------
+    Always: every refinement halves a leaf, and the number of leaves and of levels is bounded. A
+    `BudgetError` with the place ends what would take more.
+
+    References
+    ----------
+    .. [1] M. Bern, D. Eppstein, J. Gilbert, "Provably good mesh generation", J. Computer and System
+       Sciences 48 (1994).
+    .. [2] F. Labelle, J. R. Shewchuk, "Isosurface stuffing", ACM Trans. Graphics 26 (2007).
+    .. [3] M. S. Ebeida, R. L. Davis, R. W. Freund, "A new fast hybrid adaptive grid generation
+       technique for arbitrary two-dimensional domains", Int. J. Numerical Methods in Engineering 84
+       (2010).
+
+    Examples
+    --------
+    >>> from csgmesh.domain import Pslg
+    >>> square = Pslg([[0, 0], [1, 0], [1, 1], [0, 1]], [[0, 1], [1, 2], [2, 3], [3, 0]])
+    >>> Quadtree().generate(square, size=0.25)
+    <Mesh 2D: 25 points, 32 triangles, 16 facets, regions: domain, boundaries: boundary>
+    """
+
+    cells: str = "triangle"
+    gradation: float = 0.5
+    max_points: int = 10**7
+    improve: bool = False
+
+    def __post_init__(self) -> None:
+        check_choice("cells", self.cells, CELLS, "Quadtree")
+        if not (self.gradation > 0 and np.isfinite(self.gradation)):
+            raise InputError(f"gradation must be positive and finite; got {self.gradation!r}")
+        if self.max_points < 4:
+            raise InputError(f"max_points must be at least 4; got {self.max_points!r}")
+        if not isinstance(self.improve, bool):
+            raise InputError(f"improve must be True or False; got {self.improve!r}")
+
+    def generate(self, domain: Pslg, size: Any = None, progress: Progress | None = None) -> Mesh:
+        """Mesh a domain.
+
+        Parameters
+        ----------
+        domain : Pslg
+            What to mesh.
+        size : None, float, mapping, callable or SizeField
+            Wanted edge length; without one the domain's features and curves decide.
+        progress : callable, optional
+            Called as ``progress(stage, done, total)``.
+
+        Returns
+        -------
+        Mesh
+            With the domain's names and regions.
+
+        Raises
+        ------
+        BudgetError
+            If `max_points` leaves do not suffice, or an angle stays too small; with the place.
+        MeshingError
+            If segments cross or a region is not closed; with the place.
+        SizeError, NameLookupError
+            If the size is not positive and finite somewhere, or names nothing.
+        """
+        if domain.periodic:
+            raise InputError("Quadtree does not mesh periodic sides alike; DelaunayRefinement does")
+        wanted = resolve(size, domain)
+        width = max(int(np.ceil(GROWTH / self.gradation - 1e-9)), 1)
+        run = Run(domain, wanted, 1.0, width, self.max_points, WANTED, progress)
+        stuck = run.run(PROMISED)
+        info = {"method": "Quadtree", "min_angle": PROMISED, "options": asdict(self)}
+        mesh = run.mesh(info)
+        if stuck is not None:
+            raise BudgetError(
+                f"no refinement of the tree brings the angles at ({stuck[0]:.6g}, {stuck[1]:.6g}) "
+                f"to {PROMISED:g} degrees",
+                mesh,
+            )
+        uniform = wanted.uniform if wanted is not None else None
+        return optimise(mesh, uniform, progress=progress) if self.improve else mesh

@@ -1,0 +1,182 @@
+"""The Delaunay triangulation of points, and its balls."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from csgmesh import kernels
+from csgmesh.errors import InputError
+from csgmesh.mesh import KINDS, Mesh
+from csgmesh.tolerance import LARGEST
+
+# What the kernel returns.
+_ROOM, _SLICE, _DUPLICATE, _COLLINEAR = 1, 2, 4, 7
+#: Triangles that a cavity may hold before its buffers have to grow.
+_CAVITY = 512
+#: Numbers of points share a 64-bit key with their place on a curve.
+_MOST_POINTS = 2**28
+
+
+class DuplicateError(InputError):
+    """Two points are the same.
+
+    Attributes
+    ----------
+    pair : tuple of int
+        Numbers of the two.
+    """
+
+    def __init__(self, message: str, pair: tuple[int, int]) -> None:
+        super().__init__(message)
+        self.pair = pair
+
+
+class CollinearError(InputError):
+    """All points lie on one line."""
+
+
+def plane_points(points: ArrayLike) -> np.ndarray:
+    """Points as an array (n, 2) of finite numbers within the range of the predicates."""
+    array = np.array(points, np.float64)
+    if array.ndim != 2 or array.shape[1] != 2:
+        raise InputError(f"points must have shape (n, 2); got {array.shape}")
+    bad = ~(np.abs(array) <= LARGEST).all(axis=1)
+    if bad.any():
+        at = int(bad.argmax())
+        raise InputError(
+            f"coordinates must be finite and at most {LARGEST:g} in magnitude; point {at} is "
+            f"({array[at, 0]:g}, {array[at, 1]:g})"
+        )
+    if len(array) > _MOST_POINTS:
+        raise InputError(f"at most {_MOST_POINTS} points can be triangulated; got {len(array)}")
+    return array
+
+
+def triangulate(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Delaunay triangles (m, 3) of points and the edges (k, 2) of their hull, both to the left."""
+    n = len(points)
+    if n < 3:
+        raise CollinearError(f"a triangulation needs three points; got {n}")
+    keys = np.empty(n, np.int64)
+    kernels.curve_keys(points.reshape(-1), min(7, max(n.bit_length() // 3 - 2, 0)), keys)
+    keys.sort()
+    order = keys & (_MOST_POINTS - 1)
+    xy = points.take(order, axis=0).reshape(-1)
+    origin, twin, sub = (np.empty(4 * (2 * n + 8), np.int32) for _ in range(3))
+    work, counts = np.empty((5, _CAVITY), np.int32), np.zeros(8, np.int64)
+    while True:
+        status = kernels.insert_points(xy, origin, twin, sub, work, counts, n)
+        if status == _ROOM:
+            wide = np.empty((5, 2 * work.shape[1]), np.int32)
+            wide[:, : work.shape[1]] = work
+            work = wide
+        elif status != _SLICE:
+            break
+    if status == _DUPLICATE:
+        i, j = sorted((int(order[counts[5]]), int(order[counts[0]])))
+        x, y = points[i]
+        raise DuplicateError(
+            f"points must differ; points {i} and {j} are both ({x:.12g}, {y:.12g})", (i, j)
+        )
+    if status == _COLLINEAR:
+        raise CollinearError(f"all {n} points lie on one line, so there are no triangles")
+    rows = origin[: 4 * int(counts[1])].reshape(-1, 4)[:, :3]
+    is_ghost = (rows < 0).any(axis=1)
+    ghosts = rows[is_ghost]
+    apex = (ghosts < 0).argmax(axis=1)
+    number = np.arange(len(ghosts))
+    # A ghost's edge runs with the outside on its left.
+    hull = [ghosts[number, (apex + 2) % 3], ghosts[number, (apex + 1) % 3]]
+    return order[rows[~is_ghost]], order[np.stack(hull, axis=1)]
+
+
+def delaunay(points: ArrayLike) -> Mesh:
+    """The Delaunay triangulation of points: no point lies inside the circle of a triangle.
+
+    Among all triangulations it has the largest smallest angle. Where four points lie on a circle,
+    it is one of several. Inserted along a Hilbert curve in rounds (Amenta, Choi, Rote 2003) by
+    Bowyer and Watson (1981), with exact predicates (Shewchuk 1997).
+
+    Parameters
+    ----------
+    points : (n, 2) array_like
+        Points, all different.
+
+    Returns
+    -------
+    Mesh
+        With `points` as they were given, triangles and the edges of the convex hull, named
+        ``hull``.
+
+    Raises
+    ------
+    InputError
+        If two points are the same, or all lie on one line.
+
+    Examples
+    --------
+    >>> import csgmesh as cm
+    >>> mesh = cm.delaunay([[0, 0], [2, 0], [2, 1], [0, 1], [1, 0.5]])
+    >>> mesh.n_cells, len(mesh.boundary("hull")["line"])
+    (4, 4)
+    """
+    array = plane_points(points)
+    triangles, hull = triangulate(array)
+    return Mesh(
+        array,
+        {"triangle": triangles},
+        facets={"line": hull},
+        facet_marker={"line": np.zeros(len(hull), np.int64)},
+        facet_region={"line": np.tile([0, -1], (len(hull), 1))},
+        boundary_names=(("hull",),),
+        info={"method": "delaunay", "delaunay": True},
+    )
+
+
+def delaunay_balls(mesh: Mesh) -> tuple[np.ndarray, np.ndarray]:
+    """Centres and radii of the circles through the corners of triangles.
+
+    Of a Delaunay triangulation these are its Delaunay balls: no vertex lies inside one, and their
+    centres are the vertices of the Voronoi diagram.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        Plane, of triangles.
+
+    Returns
+    -------
+    centres : (m, 2) float64
+    radii : (m,) float64
+
+    Raises
+    ------
+    InputError
+        If the mesh holds anything but triangles.
+
+    Examples
+    --------
+    >>> import csgmesh as cm
+    >>> centres, radii = cm.delaunay_balls(cm.delaunay([[0, 0], [6, 0], [0, 8]]))
+    >>> centres, radii
+    (array([[3., 4.]]), array([5.]))
+    """
+    parts = [np.zeros((0, 3), np.int64)]
+    for kind, rows in mesh.cells.items():
+        if mesh.dim != 2 or KINDS[kind].n_corners != 3:
+            raise InputError(f"only plane triangles have Delaunay balls; the mesh holds {kind}")
+        parts.append(rows[:, :3])
+    return circles(mesh.points, np.concatenate(parts))
+
+
+def circles(points: np.ndarray, triangles: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Circumcentres (m, 2) and circumradii (m,)."""
+    a = points[triangles[:, 0]]
+    u, v = points[triangles[:, 1]] - a, points[triangles[:, 2]] - a
+    uu, vv = (u * u).sum(axis=1), (v * v).sum(axis=1)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        scale = 0.5 / (u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0])
+        arm = np.stack([v[:, 1] * uu - u[:, 1] * vv, u[:, 0] * vv - v[:, 0] * uu], axis=1)
+        arm *= scale[:, None]
+    return a + arm, np.hypot(*arm.T)

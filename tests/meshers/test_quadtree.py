@@ -1,0 +1,141 @@
+"""Quadtree: what it promises, on shapes whose features no tree knows of."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import csgmesh as cm
+from csgmesh.errors import BudgetError, InputError
+
+BOX = cm.Box((0, 0), (2, 1), name="plate")
+SHAPES = {
+    "square": (cm.Box((0, 0), (1, 1)), 0.1),
+    "disk": (cm.Disk((0, 0), 1), 0.1),
+    "plate": (BOX - cm.Disk((1, 0.5), 0.25, name="hole"), {"hole": 0.03, "default": 0.2}),
+    "ring": (cm.Disk((0, 0), 1) - cm.Disk((0, 0), 0.9), 0.2),
+    "corner of 45 degrees": (cm.Polygon([(0, 0), (2, 0), (2, 2)]), 0.15),
+    "wedge of 14 degrees": (cm.Polygon([(0, 0), (2, 0), (2, 0.5)]), 0.1),
+    "lens": (cm.Disk((0, 0), 1) & cm.Disk((1.2, 0), 1), 0.1),
+    "cusp": (cm.Disk((0, 0), 1) - cm.Disk((0.5, 0), 0.5), 0.1),
+    "regions sharing an arc": (
+        cm.Regions({"rock": BOX, "core": cm.Disk((1, 1), 0.6) & BOX}),
+        {"core": 0.05, "default": 0.2},
+    ),
+    "crack and probe": (
+        cm.Embed(
+            BOX,
+            [
+                cm.EmbeddedPath([(0.3, 0.3), (1.1, 0.62), (1.2, 0.3)], name="crack"),
+                cm.EmbeddedPoints([(1.6, 0.41)], name="probe"),
+            ],
+        ),
+        0.12,
+    ),
+    "graded 1:100": (BOX, lambda p: 0.002 + 0.2 * np.hypot(p[:, 0] - 0.7, p[:, 1] - 0.4)),
+    "no size": (BOX - cm.Disk((1, 0.5), 0.25), None),
+    "far away": (cm.Disk((1e6, -1e6), 1), 0.2),
+}
+
+
+def mesher(**options):
+    return cm.Quadtree(max_points=200_000, **options)
+
+
+@pytest.mark.parametrize("label", SHAPES)
+def test_triangles_pass_the_certificate_and_are_few(label):
+    shape, size = SHAPES[label]
+    mesh = cm.generate(shape, mesher(), size)
+    certificate = cm.check(mesh, shape)
+    assert certificate.ok, certificate.failures
+    assert mesh.info["min_angle"] == 18.4
+    plain = cm.generate(shape, cm.DelaunayRefinement(), size)
+    assert mesh.n_cells <= 3 * plain.n_cells
+    assert mesh.names == plain.names
+
+
+def test_without_sharp_corners_angles_are_half_right_angles_nearly():
+    for label in ("square", "disk", "plate", "ring", "regions sharing an arc", "graded 1:100"):
+        mesh = cm.generate(SHAPES[label][0], mesher(), SHAPES[label][1])
+        assert cm.quality(mesh).min_angle.min() >= 26, label
+
+
+def test_improvement_reaches_28_degrees():
+    for label in ("square", "disk", "plate", "ring", "regions sharing an arc"):
+        mesh = cm.generate(SHAPES[label][0], mesher(improve=True), SHAPES[label][1])
+        assert cm.quality(mesh).min_angle.min() >= 28, label
+        assert cm.check(mesh, SHAPES[label][0]).ok
+
+
+def test_the_inside_is_right_angled_and_edges_follow_the_size():
+    mesh = cm.generate(cm.Disk((0, 0), 1), mesher(), 0.05)
+    angle = cm.quality(mesh).min_angle
+    assert np.mean(np.abs(angle - 45) < 3) > 0.8
+    corner = mesh.points[mesh.cells["triangle"]]
+    length = np.hypot(*np.moveaxis(np.roll(corner, 1, axis=1) - corner, 2, 0))
+    assert 0.02 <= length.min() <= length.max() <= 0.12
+    assert np.mean((length >= 0.03) & (length <= 0.08)) > 0.98
+
+
+def test_no_delaunay_mesher_is_called(monkeypatch):
+    def refuse(*_):
+        raise AssertionError("called")
+
+    for other in (cm.DelaunayRefinement, cm.ConstrainedDelaunay):
+        monkeypatch.setattr(other, "generate", refuse)
+    assert cm.generate(BOX - cm.Disk((1, 0.5), 0.25), mesher(), 0.1).n_cells > 100
+
+
+def test_the_same_input_gives_the_same_bytes():
+    shape, size = SHAPES["plate"]
+    assert cm.generate(shape, mesher(), size).equals(cm.generate(shape, mesher(), size))
+
+
+def test_gradation_bounds_the_growth():
+    shape, size = SHAPES["graded 1:100"]
+    steep, gentle = (cm.generate(shape, mesher(gradation=g), size) for g in (0.5, 0.1))
+    assert gentle.n_cells > 1.2 * steep.n_cells
+
+
+def test_a_budget_ends_it_with_a_place():
+    with pytest.raises(BudgetError, match=r"more than 1,000 leaves .* at \("):
+        cm.generate(BOX, cm.Quadtree(max_points=1000), 0.01)
+    ring = cm.Disk((0, 0), 1) - cm.Disk((0, 0), 1 - 1e-6)
+    with pytest.raises(BudgetError, match="leaves of the tree"):
+        cm.generate(ring, cm.Quadtree(max_points=20_000))
+
+
+def test_wrong_options_are_errors():
+    with pytest.raises(InputError, match=r"cells must be one of .*'triangles'"):
+        cm.Quadtree(cells="triangles")
+    with pytest.raises(InputError, match="gradation must be positive"):
+        cm.Quadtree(gradation=0)
+    with pytest.raises(InputError, match="improve must be True or False"):
+        cm.Quadtree(improve=1)
+
+
+numbers = st.floats(0.1, 1.5)
+places = st.tuples(st.floats(-1, 1), st.floats(-1, 1))
+leaves = st.one_of(
+    st.builds(cm.Disk, places, numbers),
+    st.builds(lambda p, w, h, a: cm.Box(p, (p[0] + w, p[1] + h)).rotate(a), places, numbers,
+              numbers, st.sampled_from([0, 0, 30, 45])),
+    st.builds(cm.RegularPolygon, places, numbers, st.integers(3, 7)),
+)  # fmt: skip
+trees = st.recursive(
+    leaves,
+    lambda s: st.one_of(st.builds(lambda a, b: a | b, s, s), st.builds(lambda a, b: a - b, s, s)),
+    max_leaves=4,
+)
+
+
+@settings(max_examples=25)
+@given(trees, st.sampled_from([None, 0.2]))
+def test_random_trees_pass_the_certificate(shape, size):
+    try:
+        domain = cm.evaluate(shape)
+        mesh = cm.generate(domain, mesher(), size)
+    except (cm.EvaluationError, BudgetError):
+        return
+    certificate = cm.check(mesh, domain)
+    assert certificate.ok, (shape, certificate.failures)
