@@ -21,6 +21,7 @@ __all__ = ["cache_directory", "must_compile"]
 _HOME = {
     "insert_points": "delaunay",
     "curve_keys": "delaunay",
+    "insertion_order": "ordering",
     "recover_segments": "segments",
     "flood_regions": "segments",
     "block_around_points": "lattice",

@@ -22,6 +22,8 @@ BOTH_APEXES = -2
 NO_TRIANGLE = 2**62
 #: Points of a domain: their numbers share a 64-bit key with their place on a curve.
 MOST_POINTS = 2**28
+#: Up to so many points are sorted by small digits, for which less has to be counted.
+FEW = 2000
 
 
 def grown(array: np.ndarray, size: int) -> np.ndarray:
@@ -58,15 +60,22 @@ class Workspace:
         n = len(pieces.points)
         if n > MOST_POINTS:
             raise MeshingError(f"a domain may have {MOST_POINTS} points; it has {n}")
-        keys = np.empty(n, np.int64)
-        # A copy: read-only arrays are another type, for which kernels would be compiled again.
-        flat = np.array(pieces.points).reshape(-1)
-        kernels.curve_keys(flat, rounds(n), keys)
-        keys.sort()
-        self.order = keys & (MOST_POINTS - 1)
+        self.order = np.empty(n, np.int32)
         self.rank = np.empty(n, np.int32)
-        self.rank[self.order] = np.arange(n, dtype=np.int32)
-        self.points = flat.reshape(-1, 2).take(self.order, axis=0).reshape(-1)
+        self.points = np.empty(2 * n)
+        digit = 11 if n > FEW else 6
+        kernels.insertion_order(
+            # A copy: read-only arrays are another type, for which kernels would be compiled again.
+            np.array(pieces.points).reshape(-1),
+            rounds(n),
+            digit,
+            np.empty(2**digit, np.int64),
+            np.empty(n, np.int64),
+            np.empty(n, np.int64),
+            self.order,
+            self.rank,
+            self.points,
+        )
         self.n_points = n
         self.n_triangles = 0
         #: Triangles from this one on are known to be good.
