@@ -8,10 +8,11 @@ import sys
 import tempfile
 import time
 import tracemalloc
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from functools import partial
 from itertools import islice
 from pathlib import Path
+from resource import RUSAGE_CHILDREN, getrusage
 from typing import Any
 
 import numpy as np
@@ -30,20 +31,21 @@ GLYPHS = 400
 def small(counts: list[int]) -> Rows:
     """Thousands of small domains one after the other, evaluation apart."""
     domains = [cm.evaluate(outline) for outline in islice(_glyphs(), GLYPHS)]
-    rounds = max(counts) // 100 // len(domains)
+    rounds = max(max(counts) // 100 // len(domains), 1)
     rows = []
     for angle in (20.0, 30.0):
         mesher = cm.DelaunayRefinement(min_angle=angle)
         cells = sum(mesher.generate(domain).n_cells for domain in domains)
-        start = time.perf_counter()
-        for _ in range(max(rounds, 1)):
+        start, busy = time.perf_counter(), time.process_time()
+        for _ in range(rounds):
             for domain in domains:
                 mesher.generate(domain)
-        seconds = time.perf_counter() - start
+        n = rounds * len(domains)
         rows.append({
-            "case": f"{max(rounds, 1) * len(domains)} glyphs at {angle:g} degrees",
+            "case": f"{n} glyphs at {angle:g} degrees",
             "triangles each": cells / len(domains),
-            "ms each": 1e3 * seconds / max(rounds, 1) / len(domains),
+            "ms each": 1e3 * (time.perf_counter() - start) / n,
+            "processor ms each": 1e3 * (time.process_time() - busy) / n,
             "load": round(os.getloadavg()[0], 1),
         })  # fmt: skip
     return rows
@@ -84,35 +86,43 @@ def memory(counts: list[int]) -> Rows:
 
 def cold(counts: list[int]) -> Rows:
     """Compiling for the first mesh ever, and the command line afterwards."""
-    rows = []
     python = sys.executable
-    mesh = "import csgmesh as cm; cm.generate(cm.Disk((0, 0), 1))"
+    mesh = [python, "-c", "import csgmesh as cm; cm.generate(cm.Disk((0, 0), 1))"]
     with tempfile.TemporaryDirectory() as folder:
         environment = {**os.environ, "NUMBA_CACHE_DIR": str(Path(folder) / "cache")}
         output = str(Path(folder) / "plate.msh")
         plate = [str(ROOT / "examples" / "plate.yaml"), "-o", output]
         run = partial(_run, environment=environment)
-        first = run([python, "-c", mesh])
-        again = median_seconds(lambda: run([python, "-c", mesh]), 5)
-        run([python, "-m", "csgmesh", "mesh", *plate])
-        command = median_seconds(lambda: run([python, "-m", "csgmesh", "mesh", *plate]), 5)
-    help_text = median_seconds(lambda: _run([python, "-m", "csgmesh", "--help"], os.environ), 5)
-    for what, seconds in (
-        ("first mesh, nothing compiled yet", first),
-        ("the same, compiled", again),
-        ("of which compiling", first - again),
-        ("csgmesh mesh examples/plate.yaml, compiled", command),
-        ("csgmesh --help", help_text),
-    ):
-        load = round(os.getloadavg()[0], 1)
-        rows.append({"what": what, "seconds": seconds, "load": load})
-    return rows
+        first = run(mesh)
+        again = _median_run(run, mesh)
+        command = [python, "-m", "csgmesh", "mesh", *plate]
+        run(command)
+        meshed = _median_run(run, command)
+    help_text = _median_run(partial(_run, environment=os.environ), [python, "-m", "csgmesh", "-h"])
+    return [
+        {"what": what, "seconds": wall, "processor s": busy, "load": round(os.getloadavg()[0], 1)}
+        for what, (wall, busy) in (
+            ("first mesh, nothing compiled yet", first),
+            ("the same, compiled", again),
+            ("of which compiling", (first[0] - again[0], first[1] - again[1])),
+            ("csgmesh mesh examples/plate.yaml, compiled", meshed),
+            ("csgmesh --help", help_text),
+        )
+    ]
 
 
-def _run(command: list[str], environment: Any) -> float:
-    start = time.perf_counter()
+def _median_run(run: Callable[[list[str]], tuple[float, float]], command: list[str]) -> Any:
+    """Medians of five runs."""
+    return tuple(np.median([run(command) for _ in range(5)], axis=0).tolist())
+
+
+def _run(command: list[str], environment: Any) -> tuple[float, float]:
+    """Seconds on the wall and of processor time."""
+    start, before = time.perf_counter(), getrusage(RUSAGE_CHILDREN)
     subprocess.run(command, env=environment, check=True, capture_output=True)
-    return time.perf_counter() - start
+    after = getrusage(RUSAGE_CHILDREN)
+    busy = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+    return time.perf_counter() - start, busy
 
 
 def files(counts: list[int]) -> Rows:

@@ -4,6 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
+#: As many points are compared without a search tree, which has to be imported first.
+FEW = 2000
+SWEEP = np.array([0.8, 0.6])
+
 
 class Boxes:
     """Axis-parallel boxes, searchable; closed, so boxes that only touch overlap.
@@ -37,11 +41,36 @@ class Boxes:
 
 
 def near_pairs(points: np.ndarray, distance: float) -> np.ndarray:
-    """All pairs i < j of points no further apart than `distance`, (k, 2), sorted."""
+    """All pairs i < j of points no further apart than `distance`, (k, 2), sorted.
+
+    Examples
+    --------
+    >>> near_pairs(np.array([[0.0, 0.0], [1.0, 1.0], [0.0, 0.1]]), 0.2)
+    array([[0, 2]])
+    """
+    if len(points) <= FEW:
+        return _few_near_pairs(points, distance)
     from scipy.spatial import cKDTree
 
     found = cKDTree(points).query_pairs(distance, output_type="ndarray").astype(np.int64)
     return _sorted_rows(found.reshape(-1, 2).T)
+
+
+def _few_near_pairs(points: np.ndarray, distance: float) -> np.ndarray:
+    """The same by sweeping along a direction in which hardly any points lie side by side."""
+    along = points @ SWEEP
+    order = np.argsort(along, kind="stable")
+    along, ranked = along[order], points[order]
+    reach = distance + 4 * np.spacing(np.abs(points).max(initial=0.0))
+    found = []
+    for step in range(1, len(points)):
+        behind = np.flatnonzero(along[step:] - along[:-step] <= reach)
+        if not len(behind):
+            break
+        away = ranked[behind + step] - ranked[behind]
+        behind = behind[np.hypot(away[:, 0], away[:, 1]) <= distance]
+        found.append(np.sort([order[behind], order[behind + step]], axis=0))
+    return _sorted_rows(np.concatenate(found, axis=1) if found else np.zeros((2, 0)))
 
 
 def _diagonals(lo: np.ndarray, hi: np.ndarray) -> np.ndarray:

@@ -14,6 +14,7 @@ import numpy as np
 from csgmesh.boundary.intersections import Meetings, candidate_pairs, meetings, project_pieces
 from csgmesh.boundary.pieces import Frame, Pieces
 from csgmesh.domain.curves import LINE
+from csgmesh.graphs import components
 from csgmesh.spatial import Boxes, near_pairs
 from csgmesh.tolerance import ON_CURVE_SHARE
 
@@ -182,9 +183,6 @@ def _clusters(cloud: np.ndarray, links: np.ndarray, busy: np.ndarray, snap: floa
         Points whose other neighbours are still to be found.
     snap : float
     """
-    from scipy.sparse import coo_array
-    from scipy.sparse.csgraph import connected_components
-
     n = len(cloud)
     some = np.flatnonzero(busy)
     # Cells far smaller than the snap distance first: a thousand lines through one point give half
@@ -196,8 +194,7 @@ def _clusters(cloud: np.ndarray, links: np.ndarray, busy: np.ndarray, snap: floa
     same = np.column_stack([some[order], lead[np.cumsum(first) - 1]])
     near = lead[near_pairs(cloud[lead], snap)] if len(lead) else same
     pair = np.concatenate([links, same, near])
-    graph = coo_array((np.ones(len(pair), np.int8), (pair[:, 0], pair[:, 1])), shape=(n, n))
-    count, label = connected_components(graph, directed=False)
+    count, label = components(n, pair[:, 0], pair[:, 1])
     lowest = np.full(count, n)
     np.minimum.at(lowest, label, np.arange(n))
     return lowest[label]

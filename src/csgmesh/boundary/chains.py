@@ -15,6 +15,7 @@ from csgmesh.boundary.pieces import FRAME
 from csgmesh.csg.program import Program
 from csgmesh.domain.curves import ARC
 from csgmesh.errors import EmptyDomainError, UnboundedDomainError
+from csgmesh.graphs import components
 
 
 @dataclass(frozen=True, eq=False)
@@ -186,17 +187,9 @@ def _followers(
 
 
 def _runs(n: int, follower: np.ndarray) -> np.ndarray:
-    from scipy.sparse import coo_array
-    from scipy.sparse.csgraph import connected_components
-
+    """The chain of each edge; chains are numbered by their first edge."""
     at = np.flatnonzero(follower >= 0)
-    graph = coo_array((np.ones(len(at), np.int8), (at, follower[at])), shape=(n, n))
-    _, label = connected_components(graph, directed=False)
-    # Number chains by their first edge.
-    _, first, back = np.unique(label, return_index=True, return_inverse=True)
-    rank = np.empty(len(first), np.int64)
-    rank[np.argsort(first)] = np.arange(len(first))
-    return rank[back]
+    return components(n, at, follower[at])[1]
 
 
 def _nothing_left(program: Program) -> str:

@@ -16,6 +16,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from csgmesh.graphs import components, spanning_tree
+
 
 @dataclass(frozen=True, eq=False)
 class PlanarMap:
@@ -64,9 +66,9 @@ class PlanarMap:
         clockwise[counterclockwise[first]] = counterclockwise[last]
         twin = np.arange(n) ^ 1
         follow = clockwise[twin]
-        n_cycles, cycle = _components(n, np.arange(n), follow)
+        n_cycles, cycle = components(n, np.arange(n), follow)
         used, compact = np.unique(tail, return_inverse=True)
-        n_components, label = _components(len(used), compact[0::2], compact[1::2])
+        n_components, label = components(len(used), compact[0::2], compact[1::2])
         return PlanarMap(tail, follow, cycle, label[compact], n_cycles, n_components, len(used))
 
     def is_planar(self) -> bool:
@@ -100,22 +102,13 @@ class PlanarMap:
         """
         unbounded = self.n_cycles
         target = np.where(inside >= 0, self.cycle[inside], unbounded)
-        _, label = _components(self.n_cycles + 1, outer, target)
+        _, label = components(self.n_cycles + 1, outer, target)
         # Number the faces by first appearance behind the unbounded one: no library order enters.
         sequence = np.r_[label[unbounded], label[self.cycle]]
         _, first, back = np.unique(sequence, return_index=True, return_inverse=True)
         rank = np.empty(len(first), np.int64)
         rank[np.argsort(first, kind="stable")] = np.arange(len(first))
         return rank[back][1:]
-
-
-def _components(n: int, a: np.ndarray, b: np.ndarray) -> tuple[int, np.ndarray]:
-    from scipy.sparse import coo_array
-    from scipy.sparse.csgraph import connected_components
-
-    graph = coo_array((np.ones(len(a), np.int8), (a, b)), shape=(n, n))
-    count, label = connected_components(graph, directed=False)
-    return int(count), label.astype(np.int64)
 
 
 def subtree_order(n_faces: int, left: np.ndarray, right: np.ndarray) -> Dual:
@@ -127,23 +120,15 @@ def subtree_order(n_faces: int, left: np.ndarray, right: np.ndarray) -> Dual:
     left, right : (m,) int64
         Faces on both sides of each edge.
     """
-    from scipy.sparse import coo_array
-    from scipy.sparse.csgraph import breadth_first_order, depth_first_order
-
     m = len(left)
     pair = np.minimum(left, right) * n_faces + np.maximum(left, right)
     _, first = np.unique(pair, return_index=True)
     first = first[left[first] != right[first]]
-    shape = (n_faces, n_faces)
-    graph = coo_array((np.ones(len(first), np.int8), (left[first], right[first])), shape=shape)
-    _, parent = breadth_first_order(graph.tocsr(), 0, directed=False)
-    parent = parent.astype(np.int64)
+    parent, order = spanning_tree(n_faces, left[first], right[first])
     children = np.flatnonzero(parent >= 0)
     # The edge to the parent: the one of lowest number between the two faces.
     key = np.minimum(children, parent[children]) * n_faces + np.maximum(children, parent[children])
     chosen = first[np.searchsorted(pair[first], key, sorter=None)] if m else children
-    tree = coo_array((np.ones(len(children), np.int8), (parent[children], children)), shape=shape)
-    order, _ = depth_first_order(tree.tocsr(), 0, directed=True)
     position = np.empty(n_faces, np.int64)
     position[order] = np.arange(n_faces)
     size = [1] * n_faces

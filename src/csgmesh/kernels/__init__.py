@@ -10,6 +10,7 @@ import importlib
 import sys
 import threading
 import warnings
+from functools import lru_cache
 from types import ModuleType
 from typing import Any
 
@@ -90,11 +91,9 @@ def _load(name: str) -> ModuleType:
     """Import a kernel module, each of its callees first, into the directory of its own sources."""
     if f"{__name__}.{name}" in sys.modules:
         return sys.modules[f"{__name__}.{name}"]
-    import numba
-
     for callee in callees(name):
         _load(callee)
-    settings: Any = numba.config
+    settings: Any = _numba().config
     kept = settings.CACHE_DIR
     try:
         directory = cache_directory(name)
@@ -112,6 +111,28 @@ def _load(name: str) -> ModuleType:
         return importlib.import_module(f".{name}", __name__)
     finally:
         settings.CACHE_DIR = kept
+
+
+@lru_cache
+def _numba() -> ModuleType:
+    """numba, imported without scipy.linalg, which no kernel needs and which takes 0.1 s.
+
+    As numba is imported it asks whether scipy has a BLAS. It asks again whenever it compiles
+    something that calls one, so that the answer may wait.
+    """
+    import numba
+
+    try:
+        linalg = importlib.import_module("numba.np.linalg")
+        ask = linalg.ensure_blas
+        linalg.ensure_blas = lambda: None
+        try:
+            importlib.import_module("numba.np.arraymath").ensure_blas = ask
+        finally:
+            linalg.ensure_blas = ask
+    except (ImportError, AttributeError):  # Another version of numba, which asks elsewhere.
+        pass
+    return numba
 
 
 def __getattr__(name: str) -> Any:

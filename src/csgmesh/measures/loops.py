@@ -9,7 +9,7 @@ from functools import cmp_to_key
 import numpy as np
 
 from csgmesh.domain.pslg import Pslg
-from csgmesh.mesh.topology import connected
+from csgmesh.graphs import components
 
 #: Directions nearer than this many radians are compared in rational arithmetic.
 _NEAR = 1e-9
@@ -85,7 +85,7 @@ def _loops(
     points: np.ndarray, walk: np.ndarray, region: np.ndarray, n: int
 ) -> tuple[np.ndarray, np.ndarray]:
     """Number of counterclockwise and of clockwise loops of each region."""
-    n_loops, loop = connected(len(walk), np.arange(len(walk)), _next(points, walk, region))
+    n_loops, loop = components(len(walk), np.arange(len(walk)), _next(points, walk, region))
     sign = _signs(points, walk, loop, n_loops)
     owner = np.zeros(n_loops, np.int64)
     owner[loop] = region

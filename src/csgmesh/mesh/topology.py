@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from csgmesh import graphs
 from csgmesh.mesh.kinds import KINDS
 
 
@@ -138,7 +139,7 @@ def components(edges: Edges, is_open: np.ndarray | None = None) -> tuple[int, np
     passes = (edges.left >= 0) & (edges.right >= 0)
     if is_open is not None:
         passes &= is_open
-    return connected(edges.n_cells, edges.left[passes], edges.right[passes])
+    return graphs.components(edges.n_cells, edges.left[passes], edges.right[passes])
 
 
 def closure_counts(
@@ -168,7 +169,7 @@ def closure_counts(
     seen[corner] = at
     meets = np.flatnonzero(seen[corner] != at)
     n = int(component.max()) + 1 if len(component) else 0
-    n_pieces, piece = connected(n, seen[corner[meets]], at[meets])
+    n_pieces, piece = graphs.components(n, seen[corner[meets]], at[meets])
     owner = np.zeros(n_pieces, np.int64)
     owner[piece[component]] = group
     vertex_group = np.full(n_corners, -1)
@@ -199,13 +200,3 @@ def _half_edges(cells: Mapping[str, np.ndarray]) -> tuple[np.ndarray, np.ndarray
         owners.append(np.repeat(np.arange(before, before + len(connectivity)), len(local)))
         before += len(connectivity)
     return np.concatenate(rows), np.concatenate(owners), before
-
-
-def connected(n: int, a: np.ndarray, b: np.ndarray) -> tuple[int, np.ndarray]:
-    """Number of components of a graph of `n` vertices and edges (a, b), and each vertex's."""
-    from scipy.sparse import coo_array
-    from scipy.sparse.csgraph import connected_components
-
-    graph = coo_array((np.ones(len(a), np.int8), (a, b)), shape=(n, n))
-    count, label = connected_components(graph, directed=False)
-    return int(count), label.astype(np.int64)

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
+from csgmesh import graphs
 from csgmesh.measures.loops import Counts, region_counts
 from csgmesh.measures.results import Check, Failure, offenders
 from csgmesh.measures.rules.case import Case
 from csgmesh.mesh.orientation import orientations
-from csgmesh.mesh.topology import closure_counts, components, connected
+from csgmesh.mesh.topology import closure_counts, components
 from csgmesh.spatial import Boxes
 
 
@@ -136,7 +137,7 @@ def _covered_loops(case: Case, boundary: np.ndarray) -> list[Failure]:
     """Loops of the boundary that lie inside cells they do not belong to."""
     used, compact = np.unique(boundary, return_inverse=True)
     compact = compact.reshape(boundary.shape)
-    _, loop = connected(len(used), compact[:, 0], compact[:, 1])
+    _, loop = graphs.components(len(used), compact[:, 0], compact[:, 1])
     _, first = np.unique(loop, return_index=True)
     probe = used[first]
     pairs = case.mesh.locator.all_cells_of(case.mesh.points[probe])
