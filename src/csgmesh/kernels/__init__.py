@@ -123,11 +123,12 @@ def _numba() -> ModuleType:
     import numba
 
     try:
-        linalg = importlib.import_module("numba.np.linalg")
+        linalg: Any = importlib.import_module("numba.np.linalg")
         ask = linalg.ensure_blas
         linalg.ensure_blas = lambda: None
         try:
-            importlib.import_module("numba.np.arraymath").ensure_blas = ask
+            arraymath: Any = importlib.import_module("numba.np.arraymath")
+            arraymath.ensure_blas = ask
         finally:
             linalg.ensure_blas = ask
     except (ImportError, AttributeError):  # Another version of numba, which asks elsewhere.
