@@ -8,10 +8,10 @@ from typing import Any
 
 import numpy as np
 
+from csgmesh import graphs
 from csgmesh.domain.curves import LINE
 from csgmesh.domain.names import find_markers
 from csgmesh.errors import InputError, MeshingError
-from csgmesh.mesh.topology import connected
 from csgmesh.meshers.structured.layout import Edge, Layout
 from csgmesh.meshers.structured.spacing import TABLE, Spacing, by_density, given
 from csgmesh.size.resolve import ResolvedSize, evaluate
@@ -89,7 +89,7 @@ class Counts:
             for pair in ((block.bottom[0], block.top[0]), (block.left[0], block.right[0]))
         ]
         a, b = np.array(sides).T
-        return connected(len(self.layout.edges), a, b)[1]
+        return graphs.components(len(self.layout.edges), a, b)[1]
 
     def _edge_table(self, edge: Edge) -> tuple[np.ndarray, np.ndarray]:
         """Start of each part and the end as arc lengths; the total is last."""
