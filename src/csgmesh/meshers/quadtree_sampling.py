@@ -6,11 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from csgmesh import kernels
+from csgmesh import graphs, kernels
 from csgmesh.domain.curves import ARC
 from csgmesh.domain.input_angles import SharpCorners
 from csgmesh.domain.pslg import Pslg
-from csgmesh.mesh.topology import connected
 from csgmesh.meshers.subdivision import pieces_by_turning, points_on
 from csgmesh.tree import LinearTree
 
@@ -65,7 +64,7 @@ class Strands:
         self.domain = domain
         m, n = domain.n_segments, domain.n_points
         first, second, self.is_fixed = _joints(domain, rigid)
-        count, label = connected(m, first, second)
+        count, label = graphs.components(m, first, second)
         travel = domain.segment_interval[:, 1] - domain.segment_interval[:, 0]
         along = domain.segment_interval[:, 0] * np.sign(travel)
         #: Segments in the order of their strands, and the strand of each.
