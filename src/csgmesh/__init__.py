@@ -17,6 +17,7 @@ __version__ = "0.1.0"
 
 #: Where each public name lives. Nothing is imported before it is used.
 _HOME = {
+    "csgmesh.adaptivity": ("Adaptation", "adapt", "generate_to_budget"),
     "csgmesh.boundary": ("evaluate",),
     "csgmesh.csg": (
         "Ball",
@@ -69,7 +70,7 @@ _HOME = {
     ),
     "csgmesh.improve": ("elevate", "refine", "smooth"),
     "csgmesh.io": ("from_meshio", "read", "to_meshio", "to_skfem", "write"),
-    "csgmesh.measures": ("Certificate", "Quality", "quality"),
+    "csgmesh.measures": ("Certificate", "Quality", "SizeConformity", "quality", "size_conformity"),
     "csgmesh.mesh": ("Mesh",),
     "csgmesh.meshers": (
         "ConstrainedDelaunay",
@@ -86,6 +87,7 @@ _HOME = {
         "BackgroundSize",
         "CurvatureSize",
         "FeatureSize",
+        "HessianSize",
         "NearSize",
         "RegionSize",
         "SizeField",
@@ -107,6 +109,7 @@ _HOME = {
 _MODULE_OF = {name: module for module, names in _HOME.items() for name in names}
 
 __all__ = [
+    "Adaptation",
     "BackgroundSize",
     "Ball",
     "Box",
@@ -132,6 +135,7 @@ __all__ = [
     "FeatureSize",
     "FileFormatError",
     "HalfSpace",
+    "HessianSize",
     "InputError",
     "Layers",
     "Mesh",
@@ -155,6 +159,7 @@ __all__ = [
     "Revolve",
     "Shape",
     "ShapeError",
+    "SizeConformity",
     "SizeError",
     "SizeField",
     "Structured",
@@ -165,6 +170,7 @@ __all__ = [
     "UnboundedDomainError",
     "UniformSize",
     "Voronoi",
+    "adapt",
     "check",
     "delaunay",
     "delaunay_balls",
@@ -175,6 +181,7 @@ __all__ = [
     "flip_to_delaunay",
     "from_meshio",
     "generate",
+    "generate_to_budget",
     "intersection",
     "load",
     "minimum",
@@ -183,6 +190,7 @@ __all__ = [
     "quality",
     "read",
     "refine",
+    "size_conformity",
     "smooth",
     "symmetric_difference",
     "to_meshio",
@@ -193,6 +201,7 @@ __all__ = [
 ]
 
 if TYPE_CHECKING:
+    from csgmesh.adaptivity import Adaptation, adapt, generate_to_budget
     from csgmesh.boundary import evaluate
     from csgmesh.csg import (
         Ball,
@@ -246,6 +255,7 @@ if TYPE_CHECKING:
     from csgmesh.improve import elevate, refine, smooth
     from csgmesh.io import from_meshio, read, to_meshio, to_skfem, write
     from csgmesh.measures.certificate import Certificate
+    from csgmesh.measures.conformity import SizeConformity, size_conformity
     from csgmesh.measures.quality import Quality, quality
     from csgmesh.mesh import Mesh
     from csgmesh.meshers import (
@@ -263,6 +273,7 @@ if TYPE_CHECKING:
         BackgroundSize,
         CurvatureSize,
         FeatureSize,
+        HessianSize,
         NearSize,
         RegionSize,
         SizeField,

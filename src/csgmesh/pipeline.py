@@ -72,14 +72,7 @@ def generate(
     >>> mesh.names
     ('box.left', 'box.right', 'box.bottom', 'box.top', 'disk')
     """
-    if mesher is None:
-        from csgmesh.meshers import DelaunayRefinement
-
-        mesher = DelaunayRefinement()
-    elif isinstance(mesher, type) or not callable(getattr(mesher, "generate", None)):
-        raise InputError(
-            f"mesher must be an object such as DelaunayRefinement(min_angle=30), got {mesher!r}"
-        )
+    mesher = default_mesher(mesher)
     if progress is not None and not callable(progress):
         raise InputError(
             f"progress must be callable as progress(stage, done, total); got {progress!r}"
@@ -106,6 +99,26 @@ def _refuse_other_dimension(mesher: Mesher, dim: int) -> None:
             f"{type(mesher).__name__} meshes domains in {places[5 - dim]}; this one lies in "
             f"{places[dim]}" + ("; Sweep meshes extrusions and revolutions" if dim == 3 else "")
         )
+
+
+def default_mesher(mesher: Any) -> Mesher:
+    """The mesher given, or `DelaunayRefinement` for None.
+
+    Raises
+    ------
+    InputError
+        If it is not an object that can generate.
+    """
+    if mesher is None:
+        from csgmesh.meshers import DelaunayRefinement
+
+        return DelaunayRefinement()
+    if isinstance(mesher, type) or not callable(getattr(mesher, "generate", None)):
+        raise InputError(
+            f"mesher must be an object such as DelaunayRefinement(min_angle=30), got {mesher!r}"
+        )
+    chosen: Mesher = mesher
+    return chosen
 
 
 def check(mesh: Mesh, shape: Any = None) -> Certificate:

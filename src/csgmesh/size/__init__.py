@@ -6,6 +6,7 @@ from csgmesh.size.curvature import CurvatureSize
 from csgmesh.size.feature import FeatureSize
 from csgmesh.size.field import SizeField, UniformSize
 from csgmesh.size.gradation import limit_gradation
+from csgmesh.size.hessian import HessianSize
 from csgmesh.size.near import NearSize
 from csgmesh.size.region import RegionSize
 from csgmesh.size.resolve import ResolvedSize, pointwise, resolve
@@ -14,6 +15,7 @@ __all__ = [
     "BackgroundSize",
     "CurvatureSize",
     "FeatureSize",
+    "HessianSize",
     "NearSize",
     "RegionSize",
     "ResolvedSize",

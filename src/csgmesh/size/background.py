@@ -70,7 +70,7 @@ class BackgroundSize(SizeField):
     def bind(self, domain: Pslg) -> Source:
         """The interpolated values, which do not depend on the domain."""
         if isinstance(self.background, Mesh):
-            return _OnMesh(self.background, self.values)
+            return on_mesh(self.background, self.values)
         return _OnGrid(self.background, self.values)
 
 
@@ -88,6 +88,11 @@ def _grid_lines(background: Any) -> tuple[np.ndarray, np.ndarray]:
                 f"BackgroundSize: {name} must be two or more increasing coordinates; got {line}"
             )
     return x, y
+
+
+def on_mesh(mesh: Mesh, values: np.ndarray) -> Source:
+    """Values at the points of a mesh as a function of place: linear in cells, constant beyond."""
+    return _OnMesh(mesh, values)
 
 
 class _OnMesh:

@@ -44,17 +44,23 @@ def gaps(domain: Pslg) -> tuple[np.ndarray, np.ndarray]:
     """
     at_corners = corners(domain)
     outline = Outline.of(domain)
+    new = np.arange(len(outline.segment))
+    disks = _Disks.none()
     for _ in range(ROUNDS):
-        disks = _disks(outline, at_corners, domain)
+        nearest = GradedSources(outline.ends, np.zeros(len(outline.ends)), 0.0, 1.0)
+        found = _disks(nearest, outline, new, at_corners, domain)
+        disks = _Disks.joined(disks, found)
         narrowest = np.full(len(outline.segment), np.inf)
-        for piece in (disks.piece, disks.other):
+        other = nearest.lowest(disks.bridge[:, 1])[1]
+        for piece in (disks.piece, other):
             np.minimum.at(narrowest, piece, 2 * disks.radius)
-        length = outline.lengths()
-        wanted = np.ceil(length / np.maximum(narrowest, FINEST * domain.diagonal))
-        parts = np.clip(wanted, 1, CUTS).astype(np.int64)
+        wanted = outline.lengths() / np.maximum(narrowest, FINEST * domain.diagonal)
+        parts = np.clip(np.ceil(wanted), 1, CUTS).astype(np.int64)
         if not (parts > 1).any():
             break
         outline = outline.cut(domain, parts)
+        new = np.flatnonzero(np.repeat(parts, parts) > 1)
+        disks = disks.of_whole(parts)
     tips = domain.points[at_corners.vertex]
     return (
         np.concatenate([disks.bridge, np.stack([tips, tips], axis=1)]),
@@ -64,47 +70,72 @@ def gaps(domain: Pslg) -> tuple[np.ndarray, np.ndarray]:
 
 @dataclass(frozen=True, eq=False)
 class _Disks:
-    """Disks between features: the pieces that each touches, where, and its radius."""
+    """Disks between features: the piece that each started from, where it touches, its radius.
+
+    A disk that started in a corner is found anew each round.
+    """
 
     piece: np.ndarray
-    other: np.ndarray
     bridge: np.ndarray
     radius: np.ndarray
+    in_corner: np.ndarray
+
+    @staticmethod
+    def none() -> _Disks:
+        return _Disks(np.zeros(0, np.int64), np.zeros((0, 2, 2)), np.zeros(0), np.zeros(0, bool))
+
+    @staticmethod
+    def joined(a: _Disks, b: _Disks) -> _Disks:
+        return _Disks(
+            np.concatenate([a.piece, b.piece]),
+            np.concatenate([a.bridge, b.bridge]),
+            np.concatenate([a.radius, b.radius]),
+            np.concatenate([a.in_corner, b.in_corner]),
+        )
+
+    def of_whole(self, parts: np.ndarray) -> _Disks:
+        """Those of pieces that are not cut, with the numbers that these have afterwards."""
+        keep = (parts[self.piece] == 1) & ~self.in_corner
+        number = (np.cumsum(parts) - parts)[self.piece[keep]]
+        return _Disks(number, self.bridge[keep], self.radius[keep], self.in_corner[keep])
 
 
-def _disks(outline: Outline, at_corners: Corners, domain: Pslg) -> _Disks:
-    pieces = outline.pieces()
-    nearest = GradedSources(pieces, np.zeros(len(pieces)), 0.0, 1.0)
-    start, normal, own = _starts(outline, at_corners, domain)
-    radius, met = _shrink(nearest, pieces, start, normal, domain.diagonal)
+def _disks(
+    nearest: GradedSources, outline: Outline, new: np.ndarray, at_corners: Corners, domain: Pslg
+) -> _Disks:
+    """Disks from the new pieces of an outline, and from corners."""
+    start, normal, own = _starts(outline, new, at_corners, domain)
+    in_corner = np.arange(len(own)) >= len(own) - len(at_corners.outward[0])
+    radius, met = _shrink(nearest, outline.ends, start, normal, domain.diagonal)
     found = met >= 0
-    start, normal, own, met, radius = (x[found] for x in (start, normal, own, met, radius))
-    touched = _nearest_points(pieces[met], start + radius[:, None] * normal)
+    start, normal, own, met, radius, in_corner = (
+        x[found] for x in (start, normal, own, met, radius, in_corner)
+    )
+    touched = _nearest_points(outline.ends[met], start + radius[:, None] * normal)
     across = np.hypot(*(touched - start).T)
     opening = np.pi - 2 * np.arcsin(np.clip(0.5 * across / radius, 0.0, 1.0))
     chain = at_corners.chain[outline.segment]
     facing = opening < PARALLEL * at_corners.angles(chain[own], chain[met])
     bridge = np.stack([start, touched], axis=1)
-    return _Disks(own[facing], met[facing], bridge[facing], radius[facing])
+    return _Disks(own[facing], bridge[facing], radius[facing], in_corner[facing])
 
 
 def _starts(
-    outline: Outline, at_corners: Corners, domain: Pslg
+    outline: Outline, new: np.ndarray, at_corners: Corners, domain: Pslg
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Points of the boundary, directions into the domain, and the piece of each."""
-    pieces = outline.pieces()
-    along = pieces[:, 1] - pieces[:, 0]
-    left = np.stack([-along[:, 1], along[:, 0]], axis=1) / outline.lengths()[:, None]
-    middle = pieces.mean(axis=1)
-    sides = domain.segment_region[outline.segment] >= 0
-    number = np.arange(len(pieces))
+    """Points of the boundary, directions into the domain, the piece of each; corners last."""
+    ends = outline.ends[new]
+    along = ends[:, 1] - ends[:, 0]
+    left = np.stack([-along[:, 1], along[:, 0]], axis=1) / np.hypot(*along.T)[:, None]
+    middle = ends.mean(axis=1)
+    sides = domain.segment_region[outline.segment[new]] >= 0
     point, normal, own = at_corners.outward
-    # A disk at a corner starts from the corner; any piece of one of its chains stands for it.
+    # Any piece of one of its chains stands for a corner.
     piece = outline.first_of(own)
     return (
         np.concatenate([middle[sides[:, 0]], middle[sides[:, 1]], point]),
         np.concatenate([left[sides[:, 0]], -left[sides[:, 1]], normal]),
-        np.concatenate([number[sides[:, 0]], number[sides[:, 1]], piece]),
+        np.concatenate([new[sides[:, 0]], new[sides[:, 1]], piece]),
     )
 
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from csgmesh.domain.pslg import Pslg
-from csgmesh.size.pieces import FINER, is_bent
+from csgmesh.size.pieces import is_bent
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,16 +29,10 @@ class Outline:
 
     @classmethod
     def of(cls, domain: Pslg) -> Outline:
-        """All segments, those of curves cut in a few."""
+        """All segments, whole."""
         m = len(domain.segments)
-        whole = cls(
-            np.arange(m), np.tile([0.0, 1.0], (m, 1)), domain.points[domain.segments].copy()
-        )
-        return whole.cut(domain, np.where(is_bent(domain), FINER, 1))
-
-    def pieces(self) -> np.ndarray:
-        """Both ends of each piece, (k, 2, 2)."""
-        return self.ends
+        share = np.tile([0.0, 1.0], (m, 1))
+        return cls(np.arange(m), share, domain.points[domain.segments])
 
     def lengths(self) -> np.ndarray:
         """Length of each piece, (k,)."""

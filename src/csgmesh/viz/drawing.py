@@ -14,6 +14,7 @@ from csgmesh.domain.pslg import Pslg
 from csgmesh.errors import FileFormatError, InputError
 from csgmesh.mesh import Mesh
 from csgmesh.options import check_choice, check_options, near
+from csgmesh.size import SizeField
 from csgmesh.viz.scene import Scene, mesh_scene, pslg_scene
 
 if TYPE_CHECKING:
@@ -40,19 +41,21 @@ class Options:
     dpi: float = 150.0
     view: tuple[float, float] = (-60.0, 25.0)
     cut: tuple[Any, Any] | None = None
+    domain: Any = None
 
 
 def draw(x: Any, path: str | os.PathLike[str] | None = None, **options: Any) -> Figure | None:
-    """Draw a shape, a domain or a mesh.
+    """Draw a shape, a domain, a mesh, or a size on a domain.
 
     Regions are filled with pale colours, boundaries have strong ones and are named in the legend;
     embedded paths and points are drawn like boundaries. A domain is drawn through its exact curves,
-    a mesh as the straight cells that it has.
+    a mesh as the straight cells that it has. A size is shown by colour all over the domain.
 
     Parameters
     ----------
-    x : Shape, Regions, Embed, Periodic, Pslg, Plc or Mesh
-        What to draw; shapes are evaluated first.
+    x : Shape, Regions, Embed, Periodic, Pslg, Plc, Mesh or SizeField
+        What to draw; shapes are evaluated first. With `domain`, also a number, a mapping or a
+        callable, as `generate` takes it for a size.
     path : str or PathLike, optional
         A ``.png``, ``.svg`` or ``.pdf`` file to write.
     ax : matplotlib.axes.Axes, optional
@@ -67,7 +70,8 @@ def draw(x: Any, path: str | os.PathLike[str] | None = None, **options: Any) -> 
         Default: counts. An empty string for none.
     dpi : float
         Resolution of a PNG, and of a dense mesh within SVG and PDF; default 150.
-
+    domain : Shape, Regions, Embed or Pslg
+        On which a size is drawn; only for sizes.
     view : (float, float)
         In space: degrees around the z axis from +x, and above the plane z = 0, that a solid is
         seen from; default (-60, 25).
@@ -100,6 +104,8 @@ def draw(x: Any, path: str | os.PathLike[str] | None = None, **options: Any) -> 
     target = None if path is None else _target(Path(path))
     from csgmesh.viz.figure import compose
 
+    if chosen.domain is not None or isinstance(x, SizeField):
+        return _kept(_field(x, chosen), target, chosen)
     is_domain = isinstance(x, Pslg)
     if chosen.color == "min_angle" and not isinstance(x, Mesh):
         raise InputError(f"draw: color='min_angle' needs a Mesh; got {type(x).__name__}")
@@ -130,6 +136,17 @@ def _refuse_space_options(options: dict[str, Any]) -> None:
     for name in ("view", "cut"):
         if name in options:
             raise InputError(f"draw: {name} belongs to space; this lies in the plane")
+
+
+def _field(x: object, options: Options) -> Figure:
+    from csgmesh.boundary import evaluate
+    from csgmesh.viz.field import compose_field
+
+    if options.domain is None:
+        raise InputError("draw: a size is drawn on a domain; give domain=shape")
+    if isinstance(x, (Mesh, Pslg)):
+        raise InputError(f"draw: domain= goes with a size; got {type(x).__name__}")
+    return compose_field(evaluate(options.domain), x, options)
 
 
 def _check(options: Options) -> None:

@@ -40,14 +40,14 @@ def compose(scene: Scene, values: np.ndarray | None, options: Options) -> Figure
     colors = paint.marker_colors(scene)
     entries = legend.entries(scene, colors, values is None) if options.legend else []
     if options.ax is None:
-        size = options.figsize or _size(scene, entries, values is not None)
+        size = options.figsize or room(scene, entries, values is not None)
         figure: Figure = Picture(figsize=size, dpi=options.dpi, layout="constrained")
         FigureCanvasAgg(figure)
         axes = figure.add_subplot()
     else:
         axes, figure = options.ax, options.ax.figure
-    _frame(axes, scene)
-    scale = _scale(axes, scene)
+    frame(axes, scene)
+    scale = scale_of(axes, scene)
     if scene.cells:
         shares = None if values is None else np.clip(values / 60.0, 0.0, 1.0)
         paint.paint_cells(axes, scene, shares, scale)
@@ -88,7 +88,7 @@ def svg(figure: Figure) -> str:
     return buffer.getvalue().decode()
 
 
-def _size(scene: Scene, entries: list[legend.Entry], has_scale: bool) -> tuple[float, float]:
+def room(scene: Scene, entries: list[legend.Entry], has_scale: bool) -> tuple[float, float]:
     """Inches: the domain fills about 6.4 x 6, and the legend gets its own room."""
     width, height = np.maximum(scene.hi - scene.lo, 1e-300)
     across = 6.4 if width >= height else max(6.0 * width / height, 1.6)
@@ -98,7 +98,8 @@ def _size(scene: Scene, entries: list[legend.Entry], has_scale: bool) -> tuple[f
     return across + beside + 0.6, max(up + 0.7, 0.19 * len(entries) + 0.4)
 
 
-def _frame(axes: Axes, scene: Scene) -> None:
+def frame(axes: Axes, scene: Scene) -> None:
+    """Limits around a scene, and quiet axes."""
     margin = 0.025 * float((scene.hi - scene.lo).max())
     axes.set_xlim(scene.lo[0] - margin, scene.hi[0] + margin)
     axes.set_ylim(scene.lo[1] - margin, scene.hi[1] + margin)
@@ -108,7 +109,7 @@ def _frame(axes: Axes, scene: Scene) -> None:
         spine.set(linewidth=0.5, color="#bbbbbb")
 
 
-def _scale(axes: Axes, scene: Scene) -> float:
+def scale_of(axes: Axes, scene: Scene) -> float:
     """Typographic points a unit of length, before the layout is final: good to a third."""
     box = axes.get_window_extent()
     dpi = axes.figure.dpi
