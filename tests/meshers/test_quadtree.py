@@ -114,6 +114,59 @@ def test_wrong_options_are_errors():
         cm.Quadtree(improve=1)
 
 
+@pytest.mark.parametrize("cells", ["mixed", "quad"])
+@pytest.mark.parametrize("label", SHAPES)
+def test_quads_pass_the_certificate(label, cells):
+    shape, size = SHAPES[label]
+    mesh = cm.generate(shape, mesher(cells=cells), size)
+    certificate = cm.check(mesh, shape)
+    assert certificate.ok, certificate.failures
+    assert mesh.names == cm.generate(shape, mesher(), size).names
+    if cells == "quad":
+        assert list(mesh.cells) == ["quad"]
+        assert (cm.quality(mesh).scaled_jacobian > 0).all()
+
+
+def irregular(mesh):
+    """Share of the inner vertices that do not have four quads."""
+    count = np.bincount(mesh.cells["quad"].ravel(), minlength=mesh.n_points)
+    inner = np.ones(mesh.n_points, bool)
+    inner[mesh.facets["line"]] = False
+    return np.mean(count[inner] != 4)
+
+
+def test_uniform_quads_are_a_grid_but_near_curves():
+    square = cm.generate(cm.Box((0, 0), (1, 1)), mesher(cells="quad"), 0.05)
+    assert irregular(square) == 0
+    assert cm.quality(square).sicn.min() > 1 - 1e-9
+    disk = cm.generate(cm.Disk((0, 0), 1), mesher(cells="quad"), 0.02)
+    assert irregular(disk) < 0.05
+    assert cm.quality(disk).sicn.mean() >= 0.97
+
+
+def test_mixed_cells_are_triangles_near_curves_alone():
+    mesh = cm.generate(cm.Disk((0, 0), 1), mesher(cells="mixed"), 0.05)
+    assert len(mesh.cells["quad"]) > 10 * len(mesh.cells["triangle"])
+    centre = mesh.points[mesh.cells["triangle"]].mean(axis=1)
+    assert np.hypot(*centre.T).min() > 0.85
+
+
+def test_sharp_quads_are_listed():
+    shape, size = SHAPES["wedge of 14 degrees"]
+    assert cm.generate(shape, mesher(cells="quad"), size).info["excused"] == 1
+    assert cm.generate(BOX, mesher(cells="quad"), 0.2).info["excused"] == 0
+
+
+def test_a_domain_file_asks_for_quads(tmp_path):
+    text = "{csgmesh: 1, domain: {disk: {center: [0, 0], radius: 1}}, mesh: {quadtree: {cells: %s}, size: 0.2}}"  # noqa: E501
+    good, bad = tmp_path / "quads.yaml", tmp_path / "bad.yaml"
+    good.write_text(text % "quad")
+    assert list(cm.load(good).generate().cells) == ["quad"]
+    bad.write_text(text % "hexagon")
+    with pytest.raises(cm.DomainFileError, match=r"bad.yaml:1.*cells"):
+        cm.load(bad)
+
+
 numbers = st.floats(0.1, 1.5)
 places = st.tuples(st.floats(-1, 1), st.floats(-1, 1))
 leaves = st.one_of(
@@ -130,11 +183,11 @@ trees = st.recursive(
 
 
 @settings(max_examples=25)
-@given(trees, st.sampled_from([None, 0.2]))
-def test_random_trees_pass_the_certificate(shape, size):
+@given(trees, st.sampled_from([None, 0.2]), st.sampled_from(["triangle", "mixed", "quad"]))
+def test_random_trees_pass_the_certificate(shape, size, cells):
     try:
         domain = cm.evaluate(shape)
-        mesh = cm.generate(domain, mesher(), size)
+        mesh = cm.generate(domain, mesher(cells=cells), size)
     except (cm.EvaluationError, BudgetError):
         return
     certificate = cm.check(mesh, domain)

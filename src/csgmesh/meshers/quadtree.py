@@ -9,18 +9,25 @@ import numpy as np
 
 from csgmesh.domain.pslg import Pslg
 from csgmesh.errors import BudgetError, InputError
-from csgmesh.improve import optimise
+from csgmesh.improve import optimise, smooth
+from csgmesh.measures import quality
 from csgmesh.mesh import Mesh
+from csgmesh.meshers.quadtree_cells import mixed_mesh, quad_mesh, triangle_mesh
 from csgmesh.meshers.quadtree_run import Run
 from csgmesh.meshers.workspace import Progress
 from csgmesh.options import check_choice
 from csgmesh.size import resolve
 
-CELLS = ("triangle",)
+CELLS = ("triangle", "quad", "mixed")
 #: Smallest angle of triangles that is promised, degrees (Bern, Eppstein, Gilbert).
 PROMISED = 18.4
 #: Smallest angle below which the tree is refined around a triangle, degrees.
 WANTED = 20.0
+#: Side of a leaf as a share of a uniform size: two of its triangles are as large as two equilateral
+#: ones of the size.
+UNIFORM = 0.93
+#: Times that the tree is refined where quads fold.
+ROUNDS = 6
 #: Growth of sizes in a tree whose neighbours differ by one level.
 GROWTH = 0.5
 
@@ -36,9 +43,14 @@ class Quadtree:
     strip between, one or two leaves wide, is triangulated on these vertices and no others; then its
     vertices move and its edges turn until the smallest angles are as large as they can be.
 
+    Mixed cells are the leaves themselves, and what pairs of triangles of the strip and of the fans
+    make good quads. Quads come from mixed cells of twice the size, each halved along both
+    directions (a triangle left over makes three); then inner vertices move until the quads are as
+    square as they can be.
+
     Parameters
     ----------
-    cells : {"triangle"}
+    cells : {"triangle", "quad", "mixed"}
         What to make.
     gradation : float, default 0.5
         Bound on the growth of sizes per unit of length: 0.5 or more lets neighbouring leaves
@@ -59,14 +71,17 @@ class Quadtree:
     No angle of a triangle is smaller than 18.4 degrees, except as below; inside they are 45 and 90
     degrees. Every corner, junction and end of a path is a vertex; every curve is a union of edges
     whose vertices lie on it. Regions and names are those of the domain. The same input gives the
-    same bytes.
+    same bytes. With ``cells="quad"`` there is no triangle, and every quad is convex; with
+    ``"mixed"`` the bound on angles holds for quads too.
 
     Exceptions
     ----------
     Cells with a vertex at the apex of an input angle below 60 degrees, or within its protected
     shell (see `csgmesh.domain.input_angles`), may have smaller angles. A leaf is a power of two of
     the root, so that with a size that varies edges are between half and 1.6 times as long as asked
-    for. A point in the middle of a smooth curve, put there when it was flattened, is not kept.
+    for. A point in the middle of a smooth curve, put there when it was flattened, is not kept. At
+    an input angle below 30 degrees a quad is as sharp as the angle: ``info["excused"]`` counts
+    those. Periodic sides are refused.
 
     Termination
     -----------
@@ -81,6 +96,8 @@ class Quadtree:
     .. [3] M. S. Ebeida, R. L. Davis, R. W. Freund, "A new fast hybrid adaptive grid generation
        technique for arbitrary two-dimensional domains", Int. J. Numerical Methods in Engineering 84
        (2010).
+    .. [4] J. Liang, M. S. Ebeida, Y. Zhang, "Guaranteed-quality all-quadrilateral mesh generation
+       with feature preservation", Computer Methods in Applied Mechanics and Engineering 199 (2010).
 
     Examples
     --------
@@ -88,6 +105,8 @@ class Quadtree:
     >>> square = Pslg([[0, 0], [1, 0], [1, 1], [0, 1]], [[0, 1], [1, 2], [2, 3], [3, 0]])
     >>> Quadtree().generate(square, size=0.25)
     <Mesh 2D: 25 points, 32 triangles, 16 facets, regions: domain, boundaries: boundary>
+    >>> Quadtree(cells="quad").generate(square, size=0.25)
+    <Mesh 2D: 25 points, 16 quads, 16 facets, regions: domain, boundaries: boundary>
     """
 
     cells: str = "triangle"
@@ -134,15 +153,35 @@ class Quadtree:
             raise InputError("Quadtree does not mesh periodic sides alike; DelaunayRefinement does")
         wanted = resolve(size, domain)
         width = max(int(np.ceil(GROWTH / self.gradation - 1e-9)), 1)
-        run = Run(domain, wanted, 1.0, width, self.max_points, WANTED, progress)
+        scale = {"triangle": UNIFORM, "mixed": 1.0, "quad": 2.0}[self.cells]
+        run = Run(domain, wanted, scale, width, self.max_points, WANTED, progress)
+        info: dict[str, object] = {"method": "Quadtree", "options": asdict(self)}
+        if self.cells == "quad":
+            return self._quads(run, info, progress)
         stuck = run.run(PROMISED)
-        info = {"method": "Quadtree", "min_angle": PROMISED, "options": asdict(self)}
-        mesh = run.mesh(info)
+        info["min_angle"] = PROMISED
+        mesh = triangle_mesh(run, info) if self.cells == "triangle" else mixed_mesh(run, info)
         if stuck is not None:
             raise BudgetError(
                 f"no refinement of the tree brings the angles at ({stuck[0]:.6g}, {stuck[1]:.6g}) "
                 f"to {PROMISED:g} degrees",
                 mesh,
             )
-        uniform = wanted.uniform if wanted is not None else None
-        return optimise(mesh, uniform, progress=progress) if self.improve else mesh
+        if not self.improve:
+            return mesh
+        if self.cells == "mixed":
+            return smooth(mesh, "optimize", progress=progress)
+        return optimise(mesh, wanted.uniform if wanted is not None else None, progress=progress)
+
+    def _quads(self, run: Run, info: dict[str, object], progress: Progress | None) -> Mesh:
+        """Quads; the tree is refined where they fold."""
+        for _ in range(ROUNDS):
+            run.run(PROMISED)
+            mesh = quad_mesh(run, info, progress)
+            folded = np.flatnonzero(quality(mesh).scaled_jacobian <= 0)
+            if not len(folded):
+                return smooth(mesh, "optimize", progress=progress) if self.improve else mesh
+            corners = mesh.points[mesh.cells["quad"][folded]]
+            run.refine(corners)
+        x, y = corners[0].mean(axis=0)
+        raise BudgetError(f"no refinement of the tree unfolds the quad at ({x:.6g}, {y:.6g})", mesh)

@@ -13,9 +13,7 @@ from csgmesh.tree.growth import Features, Growth, RegionOf
 
 #: Largest leaf of a graded tree as a share of the size. Leaves are powers of two, so that edges
 #: come out between half of this and 1.4 times it.
-GRADED = 1.15
-#: Leaf of a uniform tree: two of its triangles are as large as two equilateral ones of the size.
-UNIFORM = 0.93
+GRADED = 1.24
 #: Largest leaf beside a segment of the domain, as a share of the segment's length.
 SEGMENT = 1.6
 #: Most different sides that a leaf may have for the sake of sides of the domain on its own.
@@ -77,7 +75,7 @@ class Grower:
     def __init__(self, domain: Pslg, size: ResolvedSize | None, scale: float, budget: int) -> None:
         self.domain, self.size, self.scale, self.budget = domain, size, scale, budget
         self.uniform = None if size is None else size.uniform
-        side = None if self.uniform is None else UNIFORM * scale * self.uniform
+        side = None if self.uniform is None else scale * self.uniform
         self.root, self.level = root_of(domain, side)
         self.parts = self._first_parts()
         self.finer: list[tuple[np.ndarray, np.ndarray]] = []

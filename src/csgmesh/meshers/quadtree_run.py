@@ -74,11 +74,15 @@ class Run:
             if not len(low):
                 return None
             corners = self.strip.points[self.strip.cells[low]]
-            edges = corners - np.roll(corners, 1, axis=1)
-            length = np.hypot(edges[..., 0], edges[..., 1]).max(axis=1)
-            self.grower.refine_at(corners.mean(axis=1), 0.5 * length)
+            self.refine(corners)
         low = self.low_cells(promised)
         return self.strip.points[self.strip.cells[low[0]]].mean(axis=0) if len(low) else None
+
+    def refine(self, corners: np.ndarray) -> None:
+        """Ask for leaves half as large as cells (k, j, 2) around these cells."""
+        edges = corners - np.roll(corners, 1, axis=1)
+        length = np.hypot(edges[..., 0], edges[..., 1]).max(axis=1)
+        self.grower.refine_at(corners.mean(axis=1), 0.5 * length)
 
     def attempt(self) -> None:
         """Tree, boundary and strip, finer where edges of the boundary are in each other's way."""
@@ -163,27 +167,28 @@ class Run:
         idle = strip.codes[~used[n:]]
         self.grid.status[idle[self.grid.status[idle] == OF_BAND]] = 0
 
-    def triangles(self) -> tuple[np.ndarray, np.ndarray]:
-        """Triangles of all leaves inside and of the strip, with regions; sets `points`."""
+    def cells(self, quads: bool) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+        """Quads (none unless wanted) and triangles, each with their regions; sets `points`."""
         tree, grid = self.grid.tree, self.grid
         total, fan = np.zeros(3, np.int64), np.zeros(tree.n_leaves, np.uint8)
         room = np.empty(12, np.int64)
         spans = [(b, min(b + SLICE, tree.n_leaves)) for b in range(0, tree.n_leaves, SLICE)]
         shape = tree.key, tree.level, grid.kind
+        used = grid.corner, grid.status
         for begin, end in spans:
-            kernels.count_cells(*shape, grid.corner, grid.status, begin, end, 1, fan, total, room)
+            kernels.count_cells(*shape, *used, begin, end, 1, fan, total, room)
         number = self._numbered(spans)
-        m = 2 * int(total[0]) + int(total[2])
-        cells, regions = (
-            np.empty((m + len(self.strip.cells), 3), np.int64),
-            np.empty(m + len(self.strip.cells), np.int64),
-        )
-        counts = np.zeros(1, np.int64)
+        plain, _, fanned = total.tolist()
+        m = fanned + (0 if quads else 2 * plain)
+        n = m + len(self.strip.cells)
+        squares = np.empty((plain if quads else 0, 4), np.int64)
+        square_of = np.empty(len(squares), np.int64)
+        cells, regions = np.empty((n, 3), np.int64), np.empty(n, np.int64)
+        done, square = np.zeros(1, np.int64), np.zeros(1, np.int64)
         for begin, end in spans:
             kernels.write_triangles(
                 *shape,
-                grid.corner,
-                grid.status,
+                *used,
                 fan,
                 number,
                 grid.region,
@@ -191,26 +196,32 @@ class Run:
                 end,
                 cells.reshape(-1),
                 regions,
-                counts,
+                done,
                 room,
+                int(not quads),
             )
+            if quads:
+                kernels.write_quads(
+                    grid.kind,
+                    grid.corner,
+                    fan,
+                    number,
+                    grid.region,
+                    begin,
+                    end,
+                    squares.reshape(-1),
+                    square_of,
+                    square,
+                )
         to = self._strip_numbers(number)
         cells[m:], regions[m:] = to[self.strip.cells], self.strip.regions
-        return cells, regions
-
-    def _strip_numbers(self, number: np.ndarray) -> np.ndarray:
-        """Numbers of the strip's vertices in the mesh; puts those that moved where they are."""
-        n = len(self.samples.points)
-        to = np.concatenate([np.arange(n), number[self.strip.codes]])
-        here = to[n:] >= 0
-        self.points[to[n:][here]] = self.strip.points[n:][here]
-        return to
+        return squares, square_of, cells, regions
 
     def _numbered(self, spans: list[tuple[int, int]]) -> np.ndarray:
+        """Number of each code; the samples come first."""
         grid, tree = self.grid, self.grid.tree
         n = len(self.samples.points)
-        n_grid = int(np.count_nonzero(grid.status))
-        self.points = np.empty((n + n_grid, 2))
+        self.points = np.empty((n + int(np.count_nonzero(grid.status)), 2))
         self.points[:n] = self.samples.points
         number = np.empty(4 * tree.n_leaves, np.int32)
         counts = np.array([n], np.int64)
@@ -227,6 +238,14 @@ class Run:
                 counts,
             )
         return number
+
+    def _strip_numbers(self, number: np.ndarray) -> np.ndarray:
+        """Numbers of the strip's vertices in the mesh; puts those that moved where they are."""
+        n = len(self.samples.points)
+        to = np.concatenate([np.arange(n), number[self.strip.codes]])
+        here = to[n:] >= 0
+        self.points[to[n:][here]] = self.strip.points[n:][here]
+        return to
 
     def facets(self) -> dict[str, Any]:
         """Edges of the boundary as facets, each with its first region on the left."""
@@ -255,19 +274,28 @@ class Run:
         there = np.where(self._turned(), interval[:, ::-1], interval)
         return np.where(curved[:, None], there, self.samples.interval)
 
-    def mesh(self, info: dict[str, object]) -> Mesh:
-        """The mesh of triangles."""
-        cells, regions = self.triangles()
+    def mesh(
+        self, cells: dict[str, np.ndarray], regions: dict[str, np.ndarray], info: dict[str, object]
+    ) -> Mesh:
+        """A mesh of cells on the points."""
         domain = self.domain
+        # What will not be written to again needs no copy.
+        for array in (self.points, *cells.values(), *regions.values()):
+            array.flags.writeable = False
         return Mesh(
             points=self.points,
-            cells={"triangle": cells},
-            cell_region={"triangle": regions},
+            cells=cells,
+            cell_region=regions,
             region_names=domain.region_names,
             boundary_names=domain.boundary_names,
             point_marker=self._point_marker(len(self.points)),
             curves=domain.curves,
             domain=domain,
-            info=info,
+            info={
+                **info,
+                "n_points": len(self.points),
+                "n_cells": sum(len(rows) for rows in cells.values()),
+                "n_leaves": self.grid.tree.n_leaves,
+            },
             **self.facets(),
         )

@@ -207,9 +207,26 @@ def write_ring(keys, levels, n, used, corner, ids, i, mids, ring, o):
 
 @njit(**ENTRY)
 def write_triangles(
-    key, level, kind, corner, status, fan, number, region, begin, end, cells, regions, counts, room
+    key,
+    level,
+    kind,
+    corner,
+    status,
+    fan,
+    number,
+    region,
+    begin,
+    end,
+    cells,
+    regions,
+    counts,
+    room,
+    plain,
 ):
-    """Cut core leaves into triangles: two, or a fan around the hub; counts[0] of them so far."""
+    """Cut core leaves into triangles: two, or a fan around the hub; counts[0] of them so far.
+
+    plain: 0 to leave out leaves without hanging vertices.
+    """
     keys = pointer(key)
     levels = pointer(level)
     kinds = pointer(kind)
@@ -225,7 +242,7 @@ def write_triangles(
     n = key.shape[0]
     t = counts[0]
     for i in range(begin, end):
-        if kinds[i] != CORE:
+        if kinds[i] != CORE or plain + fans[i] == 0:
             continue
         if fans[i] == 0:
             a = ids[4 * i]
@@ -251,60 +268,23 @@ def write_triangles(
 
 
 @njit(**ENTRY)
-def write_quads(
-    key,
-    level,
-    kind,
-    corner,
-    status,
-    fan,
-    number,
-    region,
-    begin,
-    end,
-    cells,
-    regions,
-    rings,
-    of,
-    counts,
-    room,
-):
-    """Core leaves as quads; those with hanging vertices as rings of up to eight, padded with -1.
-
-    counts: quads and rings so far. `of` takes the regions of the rings.
-    """
-    keys = pointer(key)
-    levels = pointer(level)
+def write_quads(kind, corner, fan, number, region, begin, end, cells, regions, counts):
+    """Core leaves without hanging vertices as quads; counts[0] of them so far."""
     kinds = pointer(kind)
     codes = pointer(corner)
-    used = pointer(status)
     fans = pointer(fan)
     ids = pointer(number)
     inside = pointer(region)
     out = pointer(cells)
     to = pointer(regions)
-    ring = pointer(rings)
-    ring_of = pointer(of)
-    mids = pointer(room)
-    n = key.shape[0]
     q = counts[0]
-    r = counts[1]
     for i in range(begin, end):
-        if kinds[i] != CORE:
-            continue
-        if fans[i] == 0:
+        if kinds[i] == CORE and fans[i] == 0:
             for c in range(4):
                 out[4 * q + c] = ids[codes[4 * i + c]]
             to[q] = inside[i]
             q += 1
-        else:
-            m = write_ring(keys, levels, n, used, codes, ids, i, mids, ring, 8 * r)
-            for k in range(m, 8):
-                ring[8 * r + k] = -1
-            ring_of[r] = inside[i]
-            r += 1
     counts[0] = q
-    counts[1] = r
 
 
 @njit(**HELPER)
