@@ -108,6 +108,13 @@ class Stars:
         found: np.ndarray = np.unique(self.arrays.corner[is_in[self.arrays.owner]])
         return found
 
+    def cells_of(self, vertices: np.ndarray) -> np.ndarray:
+        """Cells around vertices, sorted."""
+        is_in = np.zeros(self.mesh.n_points, bool)
+        is_in[vertices] = True
+        found: np.ndarray = np.unique(self.arrays.owner[is_in[self.arrays.corner]])
+        return found
+
     def slid(self) -> np.ndarray:
         """Sliding vertices that have moved."""
         moved = (self.arrays.xy.reshape(-1, 2) != self.mesh.points).any(axis=1)

@@ -14,7 +14,9 @@ from csgmesh.mesh import Mesh
 SWEEPS = 6
 
 
-def make_room(mesh: Mesh, bent: np.ndarray, first_new: int, wanted: np.ndarray) -> Mesh:
+def make_room(
+    mesh: Mesh, bent: np.ndarray, first_new: int, cells: np.ndarray, wanted: np.ndarray
+) -> Mesh:
     """Move vertices near bent facets until the cells there are as good as they should be.
 
     Parameters
@@ -24,86 +26,74 @@ def make_room(mesh: Mesh, bent: np.ndarray, first_new: int, wanted: np.ndarray) 
         Vertices that have moved onto curves.
     first_new : int
         Vertices from this one on are new: these move first.
-    wanted : (n_cells,) float64
-        Sine of the angle that each cell should have no corner below.
+    cells : (m,) int64
+        Where to look: all cells around the neighbours of `bent`, and perhaps more; sorted.
+    wanted : (m,) float64
+        Sine of the angle that each of these should have no corner below.
 
     Raises
     ------
     MeshingError
         If a cell stays turned over; with its place.
     """
-    near = _touching(mesh, _mask(mesh, bent))
-    patch, number, cell = _patch(mesh, near)
+    patch, number, width = _patch(mesh, cells)
     stars = Stars(patch)
-    scale = np.where(_widths(mesh)[cell] == 3, 1.0 / np.sin(np.pi / 3), 1.0)
-    goal = np.minimum(scale * wanted[cell], 1.0)
+    goal = np.where(width == 3, wanted / np.sin(np.pi / 3), wanted) - 1e-9
+    is_bent = np.isin(number, bent)
+    beside = stars.vertices_of(stars.cells_of(np.flatnonzero(is_bent)))
+    may_move = np.zeros(len(number), bool)
+    may_move[beside] = True
+    may_move[stars.arrays.kind > 0] = False
     for sweep in range(SWEEPS):
-        bad = np.flatnonzero(stars.qualities() < goal - 1e-9)
+        bad = np.flatnonzero(stars.qualities() < goal)
         if not len(bad):
             break
         vertices = stars.vertices_of(bad)
-        is_boundary = stars.arrays.kind[vertices] > 0
         only_new = sweep < SWEEPS // 2
-        movable = ~is_boundary & ((number[vertices] >= first_new) | (not only_new))
+        movable = may_move[vertices] & ((number[vertices] >= first_new) | (not only_new))
         if not stars.move(BEST, vertices[movable]) and not only_new:
             break
     worst = stars.qualities()
-    if (worst <= 0.0).any():
-        rows = cell[int(worst.argmin())]
-        x, y = _middle(mesh, rows)
+    if len(worst) and worst.min() <= 0.0:
+        x, y = _middle(mesh, int(cells[worst.argmin()]))
         raise MeshingError(
             "refinement cannot follow the exact boundary: its curve runs through the cell at "
             f"({x:.6g}, {y:.6g}), and moving the vertices around does not help; mesh with a "
             "smaller deviation or size there"
         )
+    moved = stars.arrays.xy.reshape(-1, 2)
+    if (moved == patch.points).all():
+        return mesh
     points = np.array(mesh.points)
-    points[number] = stars.arrays.xy.reshape(-1, 2)
+    points[number] = moved
+    points.flags.writeable = False
     return replace(mesh, points=points)
 
 
-def _mask(mesh: Mesh, vertices: np.ndarray) -> np.ndarray:
-    mask = np.zeros(mesh.n_points, bool)
-    mask[vertices] = True
-    return mask
-
-
-def _touching(mesh: Mesh, mask: np.ndarray) -> np.ndarray:
-    """Vertices of the cells with a vertex in a mask, as a mask."""
-    out = np.zeros(mesh.n_points, bool)
-    for rows in mesh.cells.values():
-        out[rows[mask[rows].any(axis=1)]] = True
-    return out
-
-
-def _patch(mesh: Mesh, mask: np.ndarray) -> tuple[Mesh, np.ndarray, np.ndarray]:
-    """The cells with a vertex in a mask; the numbers of its points and cells in the mesh."""
-    cells, numbers, before = {}, [], 0
-    for kind, rows in mesh.cells.items():
-        at = np.flatnonzero(mask[rows].any(axis=1))
-        cells[kind] = rows[at]
-        numbers.append(before + at)
-        before += len(rows)
+def _patch(mesh: Mesh, cells: np.ndarray) -> tuple[Mesh, np.ndarray, np.ndarray]:
+    """Some cells as a mesh of their own; the numbers of its points, the widths of its cells."""
+    rows_of, first = {}, 0
     used = np.zeros(mesh.n_points, bool)
-    for rows in cells.values():
-        used[rows] = True
+    region, width = [], []
+    for kind, rows in mesh.cells.items():
+        at = cells[(cells >= first) & (cells < first + len(rows))] - first
+        rows_of[kind] = rows[at]
+        used[rows_of[kind]] = True
+        region.append(mesh.cell_region[kind][at])
+        width.append(np.full(len(at), rows.shape[1]))
+        first += len(rows)
     number = np.flatnonzero(used)
-    new = np.cumsum(used) - 1
-    cell = np.concatenate(numbers)
-    region = np.concatenate(list(mesh.cell_region.values()))[cell]
-    ends = np.cumsum([0, *(len(rows) for rows in cells.values())])
+    new = np.empty(mesh.n_points, np.int64)
+    new[number] = np.arange(len(number))
     facets = mesh.facets["line"]
     facets = facets[used[facets].all(axis=1)]
     patch = Mesh(
         mesh.points[number],
-        {kind: new[rows] for kind, rows in cells.items()},
-        {kind: region[ends[i] : ends[i + 1]] for i, kind in enumerate(cells)},
+        {kind: new[rows] for kind, rows in rows_of.items()},
+        dict(zip(rows_of, region, strict=True)),
         facets={"line": new[facets]},
     )
-    return patch, number, cell
-
-
-def _widths(mesh: Mesh) -> np.ndarray:
-    return np.concatenate([np.full(len(rows), rows.shape[1]) for rows in mesh.cells.values()])
+    return patch, number, np.concatenate(width)
 
 
 def _middle(mesh: Mesh, cell: int) -> np.ndarray:

@@ -92,14 +92,25 @@ class Children:
         self.rows.setdefault(kind, []).append(rows)
         self.source.setdefault(kind, []).append(np.repeat(source, count))
         self.region.setdefault(kind, []).append(np.repeat(region, count))
-        green = np.full(len(rows), -1) if group is None else np.repeat(group, count)
+        # A single -1 stands for none: most blocks have no green cells.
+        green = np.full(1, -1) if group is None else np.repeat(group, count)
         self.green.setdefault(kind, []).append(green)
+
+    def greens(self) -> dict[str, np.ndarray]:
+        """Green parents by kind; empty where there are none."""
+        if not self.n_groups:
+            return {}
+        for kind, parts in self.green.items():
+            sizes = [len(rows) for rows in self.rows[kind]]
+            self.green[kind] = [np.broadcast_to(p, n) for p, n in zip(parts, sizes, strict=True)]
+        return self.joined(self.green)
 
     def joined(self, what: dict[str, list[np.ndarray]]) -> dict[str, np.ndarray]:
         """One read-only array a kind."""
         out = {}
         for kind, parts in what.items():
-            out[kind] = parts[0] if len(parts) == 1 else np.concatenate(parts)
+            array = parts[0] if len(parts) == 1 else np.concatenate(parts)
+            out[kind] = np.ascontiguousarray(array)
             out[kind].flags.writeable = False
         return out
 
@@ -131,6 +142,7 @@ class Children:
             return
         at = start + hit
         block = Block(rows[hit], self.region[kind][-1][at], self.source[kind][-1][at], None)
+        self.green[kind][-1] = np.broadcast_to(self.green[kind][-1], len(self.rows[kind][-1]))
         for part in (self.rows, self.source, self.region, self.green):
             part[kind][-1] = np.delete(part[kind][-1], at, axis=0)
         centre = np.zeros(0, np.int64)

@@ -32,24 +32,26 @@ def refined_info(mesh: Mesh, method: str, has_green: bool) -> dict[str, Any]:
     return {**info, "min_angle": bound, "macro_min_angle": float(macro)}
 
 
-def corner_sines(mesh: Mesh) -> np.ndarray:
-    """Smallest sine of each cell's angles, counted through all kinds, (n_cells,)."""
-    out, first = np.empty(mesh.n_cells), 0
-    for rows in mesh.cells.values():
-        part = out[first : first + len(rows)]
-        kernels.corner_sines(mesh.points.reshape(-1), rows.reshape(-1), rows.shape[1], part)
-        first += len(rows)
+def corner_sines(points: np.ndarray, rows: np.ndarray) -> np.ndarray:
+    """Smallest sine of the angles of each cell, (m,)."""
+    out = np.empty(len(rows))
+    flat = np.ascontiguousarray(rows).reshape(-1).view()
+    flat.flags.writeable = False
+    kernels.corner_sines(points.reshape(-1), flat, rows.shape[1], out)
     return out
 
 
-def angle_reached(mesh: Mesh, sines: np.ndarray, bound: float) -> float:
-    """The bound, or the smallest angle below it that no sharp corner of the domain excuses."""
-    low = np.flatnonzero(sines < np.sin(np.radians(bound)))
-    angle, first = np.full(len(low), 180.0), 0
+def angle_reached(mesh: Mesh, cells: np.ndarray, bound: float) -> float:
+    """The bound, or the smallest angle of some cells that no sharp corner of the domain excuses."""
+    low, angle, first = [], [], 0
     for rows in mesh.cells.values():
-        at = np.flatnonzero((low >= first) & (low < first + len(rows)))
-        angle[at] = measure_cells(mesh.points, rows[low[at] - first]).min_angle
+        at = cells[(cells >= first) & (cells < first + len(rows))] - first
+        at = at[corner_sines(mesh.points, rows[at]) < np.sin(np.radians(bound))]
+        low.append(first + at)
+        angle.append(measure_cells(mesh.points, rows[at]).min_angle)
         first += len(rows)
-    low, angle = low[angle < bound], angle[angle < bound]
-    angle = angle[~excused_cells(Case(mesh, mesh.domain, None, bound), low)]
-    return float(min(bound, angle.min(initial=bound)))
+    number, smallest = np.concatenate(low), np.concatenate(angle)
+    number, smallest = number[smallest < bound], smallest[smallest < bound]
+    if len(number):
+        smallest = smallest[~excused_cells(Case(mesh, mesh.domain, None, bound), number)]
+    return float(smallest.min(initial=bound))
