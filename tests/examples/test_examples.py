@@ -137,3 +137,10 @@ def test_domain_files(path):
     assert not file.mismatches(mesh)
     certificate = cm.check(mesh, file.shape)
     assert certificate.ok, str(certificate)
+
+
+def test_refined(run):
+    printed, folder = run("refined")
+    assert float(re.search(r"smallest angle (\S+)", printed).group(1)) > 10.9
+    assert float(re.search(r"off by (\S+)", printed).group(1)) < 1e-5
+    check_picture(folder / "refined.png")

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from csgmesh.errors import InputError
+from csgmesh.improve.cell_edges import CellEdges
 from csgmesh.triangulation.points import (
     CollinearError,
     DuplicateError,
@@ -103,10 +104,7 @@ def _edges(points: np.ndarray) -> np.ndarray:
         # Along a line neighbours are those in its order.
         order = np.lexsort(points.T[::-1])
         return np.sort(np.stack([order[:-1], order[1:]], axis=1), axis=1)
-    n = len(points)
-    ends = np.sort(triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
-    keys = np.unique(ends[:, 0] * n + ends[:, 1])
-    return np.stack([keys // n, keys % n], axis=1)
+    return CellEdges.of([triangles], np.zeros((0, 2), np.int64), len(points)).ends
 
 
 def _edges_with_duplicates(points: np.ndarray) -> np.ndarray:
