@@ -18,6 +18,7 @@ from csgmesh.domainfile.conditions import Condition
 from csgmesh.domainfile.expressions import Expression
 from csgmesh.domainfile.limits import Limits
 from csgmesh.domainfile.parameters import described, number
+from csgmesh.domainfile.size_fields import FieldReader, is_field
 from csgmesh.errors import ExpressionError
 from csgmesh.options import near
 
@@ -102,7 +103,7 @@ def _values(value: Any, info: ValidationInfo) -> Any:
     return _nested(value, info, (), False)
 
 
-def _nested(value: Any, info: ValidationInfo, path: tuple[int, ...], words: bool) -> Any:
+def _nested(value: Any, info: ValidationInfo, path: tuple[str | int, ...], words: bool) -> Any:
     """Numbers, and words if allowed, in lists; the nesting is bounded by that of the document."""
     if isinstance(value, list):
         return [_nested(item, info, (*path, i), words) for i, item in enumerate(value)]
@@ -169,12 +170,17 @@ def _condition(value: Any, info: ValidationInfo) -> Condition:
 
 
 def _size(value: Any, info: ValidationInfo) -> Any:
-    if isinstance(value, dict):
-        return {name: _one_size(item, info, (name,)) for name, item in value.items()}
-    return _one_size(value, info, ())
+    reader = FieldReader(
+        lambda item, path: _nested(item, info, path, False),
+        lambda item, path: _one_size(item, info, path),
+        complaint,
+    )
+    if isinstance(value, dict) and not is_field(value):
+        return {name: reader.size(item, (name,)) for name, item in value.items()}
+    return reader.size(value, ())
 
 
-def _one_size(value: Any, info: ValidationInfo, path: tuple[str, ...]) -> float | Expression:
+def _one_size(value: Any, info: ValidationInfo, path: tuple[str | int, ...]) -> float | Expression:
     context = _context(info)
     try:
         if isinstance(value, str):
@@ -272,7 +278,13 @@ Size = Annotated[
         {
             "anyOf": [
                 *_SIZE_SCHEMA["anyOf"],
-                {"type": "object", "additionalProperties": _SIZE_SCHEMA},
+                {
+                    "type": "object",
+                    "description": "By name, or a size field: {near_size: {names: …, size: …}}",
+                    "additionalProperties": {
+                        "anyOf": [*_SIZE_SCHEMA["anyOf"], {"type": ["object", "array", "null"]}]
+                    },
+                },
             ]
         }
     ),

@@ -24,6 +24,8 @@ from csgmesh.domainfile.parameters import described, resolve_parameters
 from csgmesh.domainfile.parts import Part, Problem, problems_of
 from csgmesh.domainfile.schema import MeshPart, file_model
 from csgmesh.domainfile.shapes import Builder, build_shapes, placed
+from csgmesh.domainfile.size_fields import build as build_size
+from csgmesh.domainfile.size_fields import place_in
 from csgmesh.domainfile.sizes import ExpressionSize, constant_or_size
 from csgmesh.domainfile.vocabulary import Arguments, mesher_classes
 from csgmesh.errors import (
@@ -159,6 +161,10 @@ class DomainFile:
         inside = self._option_named_in(message)
         if inside is not None:
             return self.document.error(message, inside, key=True)
+        for quoted in re.findall(r"'([^']+)'", message):
+            inside = place_in(self.document.data, ("mesh", "size"), quoted)
+            if inside is not None:
+                return self.document.error(message, inside)
         option = re.match(r"(deviation|snap|size)\b", message)
         if option is not None:
             return self.document.error(message, ("mesh", option.group()), key=True)
@@ -327,9 +333,12 @@ def _size(document: Document, size: Any, dim: int, parameters: Mapping[str, floa
         except ExpressionError as error:
             raise document.error(str(error), path, offset=error.offset) from None
 
+    def at(path: KeyPath, make: Callable[[], Any]) -> Any:
+        return placed(document, path, make)
+
     if isinstance(size, dict):
-        return {name: resolved(v, ("mesh", "size", name)) for name, v in size.items()}
-    return resolved(size, ("mesh", "size"))
+        return {n: build_size(v, resolved, at, ("mesh", "size", n)) for n, v in size.items()}
+    return build_size(size, resolved, at, ("mesh", "size"))
 
 
 def _output(document: Document, path: Path, number: int, name: str) -> Path:
