@@ -81,6 +81,7 @@ _HOME = {
         "Quadtree",
         "Structured",
         "Sweep",
+        "worst_cells",
     ),
     "csgmesh.pipeline": ("check", "generate"),
     "csgmesh.size": (
@@ -197,6 +198,7 @@ __all__ = [
     "to_skfem",
     "union",
     "voronoi",
+    "worst_cells",
     "write",
 ]
 
@@ -267,6 +269,7 @@ if TYPE_CHECKING:
         Quadtree,
         Structured,
         Sweep,
+        worst_cells,
     )
     from csgmesh.pipeline import check, generate
     from csgmesh.size import (

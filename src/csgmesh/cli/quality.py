@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Annotated
+
 import typer
 
 from csgmesh.cli.sources import AnyPath, LimitOptions, MaxCells, Parameters, mesh_of
@@ -9,6 +11,12 @@ from csgmesh.cli.sources import AnyPath, LimitOptions, MaxCells, Parameters, mes
 
 def quality(
     file: AnyPath,
+    worst: Annotated[
+        int,
+        typer.Option(
+            "--worst", "-w", min=0, metavar="N", help="List the N worst triangles and why."
+        ),
+    ] = 0,
     param: Parameters = None,
     max_cells: MaxCells = None,
     limit: LimitOptions = None,
@@ -16,4 +24,10 @@ def quality(
     """Print how good the cells of a mesh are."""
     from csgmesh.measures import quality as measure
 
-    typer.echo(measure(mesh_of(file, param, max_cells, limit)))
+    mesh = mesh_of(file, param, max_cells, limit)
+    typer.echo(measure(mesh))
+    if worst:
+        from csgmesh.meshers.worst import describe, worst_cells
+
+        for cell in worst_cells(mesh, worst):
+            typer.echo(describe(cell))

@@ -20,12 +20,16 @@ from csgmesh.meshers.layers import Layers, checked_layers, with_layers
 from csgmesh.meshers.meshing import Meshing
 from csgmesh.meshers.partwise import Partwise
 from csgmesh.meshers.side_by_side import cores
+from csgmesh.meshers.units import mesh_in_own_unit, own_unit
 from csgmesh.meshers.workspace import MOST_POINTS, Progress
+from csgmesh.meshers.worst import describe, worst_cells
 from csgmesh.options import check_flag, check_real, check_whole
-from csgmesh.size import resolve
+from csgmesh.size import ResolvedSize, resolve
 
 #: Beyond this no ordering of Delaunay refinement is known to end on most inputs.
 LARGEST_MIN_ANGLE = 34.0
+#: Worst cells looked at when the budget ran out, and how many of them the message names.
+LOOKED_AT, NAMED = 50, 3
 
 
 @dataclass(frozen=True)
@@ -163,6 +167,16 @@ class DelaunayRefinement:
                 return inside.generate(inner, size, progress)
 
             return with_layers(domain, self.layers, wanted, mesh_inside, info)
+        unit = own_unit(domain)
+        if unit != 1.0:
+            return mesh_in_own_unit(
+                domain, wanted, unit, lambda here, h: self._generate(here, h, progress)
+            )
+        return self._generate(domain, wanted, progress)
+
+    def _generate(
+        self, domain: Pslg, wanted: ResolvedSize | None, progress: Progress | None
+    ) -> Mesh:
         limits = self.min_angle, self.gradation, min(self.max_points, MOST_POINTS)
         parts = parts_of(domain, wanted, self.max_points, progress)
         if len(parts) > 1:
@@ -179,7 +193,7 @@ class DelaunayRefinement:
                 raise
             mesh = self._mesh(run)
         if not finished:
-            raise BudgetError(_where_it_stopped(mesh, self, size), mesh)
+            raise BudgetError(_where_it_stopped(mesh, self, wanted), mesh)
         uniform = wanted.uniform if wanted is not None else None
         return optimise(mesh, uniform, progress=progress) if self.improve else mesh
 
@@ -210,17 +224,20 @@ class DelaunayRefinement:
         }
 
 
-def _where_it_stopped(mesh: Mesh, mesher: DelaunayRefinement, size: Any) -> str:
-    """Where a mesh that ran out of points is finest, which is where the points went."""
-    cells = mesh.cells["triangle"]
-    corners = mesh.points[cells]
+def _where_it_stopped(mesh: Mesh, mesher: DelaunayRefinement, size: ResolvedSize | None) -> str:
+    """Where a mesh that ran out of points is finest, and where its worst cells are."""
+    corners = mesh.points[mesh.cells["triangle"]]
     edges = np.roll(corners, -1, axis=1) - corners
     shortest = np.hypot(edges[..., 0], edges[..., 1]).min(axis=1)
-    worst = int(np.argmin(shortest))
-    x, y = corners[worst].mean(axis=0)
+    finest = int(np.argmin(shortest))
+    x, y = corners[finest].mean(axis=0)
     reason = "its features and the angle bound" if size is None else "the size or the features"
+    found = worst_cells(mesh, LOOKED_AT)
+    # At input angles cells are allowed to be bad: they are not what the points were missing for.
+    found = [cell for cell in found if cell["reason"] != "input angle"] or found
     return (
         f"max_points={mesher.max_points} is used up before every angle reaches "
         f"{mesher.min_angle:g} degrees; the mesh is finest at ({x:.6g}, {y:.6g}), edges of "
-        f"{shortest[worst]:.3g}, where {reason} ask for it"
+        f"{shortest[finest]:.3g}, where {reason} ask for it; its worst cells are "
+        + ", ".join(describe(cell) for cell in found[:NAMED])
     )

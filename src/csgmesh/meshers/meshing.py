@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import NoReturn
 
 import numpy as np
 
@@ -13,6 +14,7 @@ from csgmesh.meshers.background import Background, Spacing
 from csgmesh.meshers.bands import lay_bands
 from csgmesh.meshers.constrained_delaunay import triangulated
 from csgmesh.meshers.lattice import Blocks, lay_lattice
+from csgmesh.meshers.lower_bound import least_points
 from csgmesh.meshers.refiner import Refiner
 from csgmesh.meshers.sizing import OVER_BUDGET, POINTS_PER_AREA, Sizing, feature_sizes
 from csgmesh.meshers.subdivision import Spaced, Subdivision, pieces_by_turning
@@ -120,6 +122,12 @@ class Meshing:
 
     def run(self, size: ResolvedSize | None) -> bool:
         """Mesh the domain; False when the budget of points ran out."""
+        least, region = least_points(self.domain, self.corners, self.min_angle)
+        if least > self.max_points:
+            self._refuse(
+                f"region {self.domain.region_names[region]!r} is so flat that angles of "
+                f"{self.min_angle:g} degrees take {least:.2g} points at least"
+            )
         if size is None:
             return self.without_size()
         feature = feature_sizes(self.domain)
@@ -127,12 +135,16 @@ class Meshing:
             return self.graded(size, feature)
         expected = float(self.domain.chord_areas().sum()) * POINTS_PER_AREA / size.uniform**2
         if expected > OVER_BUDGET * self.max_points:
-            self.start(pieces_by_turning(self.domain))
-            self.prepare()
-            raise BudgetError(
+            self._refuse(
                 f"a size of {size.uniform:g} asks for about {expected:.2g} points in a domain "
-                f"{self.domain.diagonal:.3g} across; max_points is {self.max_points}"
+                f"{self.domain.diagonal:.3g} across"
             )
         if feature.min() >= size.uniform:
             return self.uniform(size.uniform)
         return self.graded(size, feature)
+
+    def _refuse(self, reason: str) -> NoReturn:
+        """Give up before any refinement."""
+        self.start(pieces_by_turning(self.domain))
+        self.prepare()
+        raise BudgetError(f"{reason}; max_points is {self.max_points}")

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from csgmesh.domain.input_angles import input_angles
 from csgmesh.errors import InputError
 from csgmesh.mesh import Mesh
+from csgmesh.options import check_whole
 
 #: Shells reach a little beyond their radius: vertices on them are rounded.
 SHELL = 1.0 + 1e-3
@@ -36,28 +39,53 @@ def worst_cells(mesh: Mesh, count: int = 5) -> list[dict[str, object]]:
     Raises
     ------
     InputError
-        If the mesh has no triangles.
+        If this is no mesh, or one without triangles.
 
     Examples
     --------
-    >>> from csgmesh.domain import Pslg
-    >>> from csgmesh.meshers import DelaunayRefinement
-    >>> wedge = Pslg([[0, 0], [4, 0], [4, 1]], [[0, 1], [1, 2], [2, 0]])
-    >>> worst = worst_cells(DelaunayRefinement().generate(wedge), 1)[0]
+    >>> import csgmesh as cm
+    >>> mesh = cm.generate(cm.Triangle((0, 0), (4, 0), (4, 1)))
+    >>> worst = cm.worst_cells(mesh, 1)[0]
     >>> worst["reason"], round(worst["angle"], 2)
     ('input angle', 14.04)
     """
+    if not isinstance(mesh, Mesh):
+        raise InputError(
+            f"worst_cells needs a Mesh, as generate returns; got {type(mesh).__name__}"
+        )
     cells = mesh.cells.get("triangle")
     if mesh.dim != 2 or cells is None or not len(cells):
         raise InputError("worst_cells needs a plane mesh of triangles; this one has none")
     angle = _smallest_angles(mesh.points[cells])
-    worst = np.argsort(angle, kind="stable")[:count]
+    worst = _lowest(angle, check_whole("count", count, 1))
     reasons = _reasons(mesh, cells, worst, angle[worst])
     places = mesh.points[cells[worst]].mean(axis=1)
     return [
         {"place": [float(x), float(y)], "angle": float(a), "reason": reason}
         for (x, y), a, reason in zip(places, angle[worst], reasons, strict=True)
     ]
+
+
+def _lowest(values: np.ndarray, count: int) -> np.ndarray:
+    """Where the lowest values are, in order; of equal ones the first."""
+    if count >= len(values):
+        return np.argsort(values, kind="stable")
+    level = np.partition(values, count - 1)[count - 1]
+    few = np.flatnonzero(values <= level)
+    return few[np.argsort(values[few], kind="stable")][:count]
+
+
+def describe(cell: dict[str, object]) -> str:
+    """One of `worst_cells` as text.
+
+    Examples
+    --------
+    >>> describe({"place": [0.5, 2.0], "angle": 3.1234, "reason": "narrow gap"})
+    '3.12° at (0.5, 2) (narrow gap)'
+    """
+    place: Any = cell["place"]
+    x, y = place
+    return f"{cell['angle']:.3g}° at ({x:.6g}, {y:.6g}) ({cell['reason']})"
 
 
 def _smallest_angles(corners: np.ndarray) -> np.ndarray:
@@ -79,7 +107,7 @@ def _reasons(mesh: Mesh, cells: np.ndarray, worst: np.ndarray, angle: np.ndarray
             away = np.hypot(*np.moveaxis(corners - apex, -1, 0))
             sharp |= (away <= radius * SHELL).any(axis=1)
     gap = _in_a_gap(mesh, cells[worst])
-    mean = _mean_edges(mesh.points, cells)[cells[worst]]
+    mean = _mean_edges(mesh.points, _around(cells, cells[worst], mesh.n_points))[cells[worst]]
     jump = mean.max(axis=1) > JUMP * mean.min(axis=1)
     asked = mesh.info.get("min_angle", 0.0)
     short = angle < (float(asked) if isinstance(asked, (int, float)) else 0.0)
@@ -107,6 +135,13 @@ def _in_a_gap(mesh: Mesh, cells: np.ndarray) -> np.ndarray:
     key = edge[:, 0] * mesh.n_points + edge[:, 1]
     is_facet = np.isin(key, facets[:, 0] * mesh.n_points + facets[:, 1])
     return on_boundary[cells].all(axis=1) & ~is_facet
+
+
+def _around(cells: np.ndarray, some: np.ndarray, n_points: int) -> np.ndarray:
+    """The cells at the vertices of some."""
+    touched = np.zeros(n_points, bool)
+    touched[some] = True
+    return cells[touched[cells].any(axis=1)]
 
 
 def _mean_edges(points: np.ndarray, cells: np.ndarray) -> np.ndarray:
