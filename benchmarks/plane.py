@@ -13,6 +13,7 @@ import sys
 
 from plane_costs import cold, contains, files, memory, small
 from plane_speed import delaunay, graded, speed
+from plane_threads import threads
 from report import save, show
 
 #: Name: what measures it, numbers of triangles or points.
@@ -20,6 +21,7 @@ SECTIONS = {
     "speed": (speed, [10**4, 10**5, 10**6]),
     "graded": (graded, [10**5, 10**6]),
     "delaunay": (delaunay, [10**6]),
+    "threads": (threads, [10**6]),
     "small": (small, [10**6]),
     "memory": (memory, [10**5, 10**6]),
     "cold": (cold, []),
