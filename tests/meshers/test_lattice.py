@@ -125,3 +125,15 @@ def test_a_needle_star_around_one_lattice() -> None:
     mesh = DelaunayRefinement().generate(star(60, 0.5), 0.02)
     assert_sound(mesh, star(60, 0.5))
     assert_delaunay(mesh)
+
+
+def test_short_chords_are_not_carried_into_the_domain() -> None:
+    domain = disks([(0.3, 0.3, 0.15, -1, 0), (0.7, 0.6, 0.2, -1, 0)], 50, (0, 0, 1, 1))
+    mesh = DelaunayRefinement().generate(domain, 0.05)
+    assert np.mean(edge_lengths(mesh) > 0.6 * 0.05) > 0.74
+
+
+def test_a_budget_is_not_taken_for_too_small_before_sizes_are_known() -> None:
+    # Two corners and a few points of the boundary say nothing of the inside, which is coarse.
+    mesh = DelaunayRefinement(max_points=60_000).generate(square(), {"boundary": 4e-4})
+    assert mesh.n_points < 60_000

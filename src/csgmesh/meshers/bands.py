@@ -190,8 +190,8 @@ class Demand:
         n = len(limits)
         band = np.maximum(np.searchsorted(limits, self.size, side="right") - 1, 0)
         points = np.bincount(band, self.points, n)
-        seam = np.bincount(band, self.points * self.slope * self.size, n)
-        seam = seam / np.append(np.diff(limits), np.inf)
+        climb = np.bincount(band, self.points * self.slope * self.size, n)
+        seam = climb / np.diff(limits, append=max(float(self.size.max()), 1.01 * limits[-1]))
         return np.flatnonzero((points > FEWEST_POINTS) & (points > ROWS_ACROSS * seam))
 
 

@@ -21,6 +21,8 @@ from csgmesh.meshers.subdivision import Spaced, Subdivision, pieces_by_turning
 from csgmesh.meshers.workspace import Progress, Workspace
 from csgmesh.size.resolve import ResolvedSize
 
+#: Where the size is more than this share of what a segment asks for, the segment decides.
+SHORT = 0.99
 Lay = Callable[[Subdivision], Blocks | None]
 #: Adds points to a domain for an edge length, where sizes, if there are any yet, are that large.
 Seed = Callable[[Pslg, float, Background | None], Pslg]
@@ -76,6 +78,7 @@ class Meshing:
             self.start(self._at_least(pieces), lay=lambda cut: lay_lattice(self.domain, cut, size))
         self.prepare()
         self.refiner.set_uniform(size)
+        self.refiner.go_depth_first()
         return self.refiner.run()
 
     def graded(self, size: ResolvedSize, feature: np.ndarray) -> bool:
@@ -87,6 +90,9 @@ class Meshing:
         if not sizing.approach():
             return False
         ground = Background.of(self.work, self.refiner.size)
+        at = self.work.rank[: len(feature)]
+        # Edges shorter than wanted would be carried far inside by a search in depth.
+        is_even = not (ground.size[at] > SHORT * feature).any()
         spacing = self._spacing()
         pieces = self._at_least(np.rint(spacing.edges).astype(np.int64))
         spacing.even = pieces > np.maximum(np.rint(spacing.edges), 1)
@@ -99,6 +105,8 @@ class Meshing:
             self.start(pieces, spacing)
         self.prepare()
         self.refiner.set_background(ground)
+        if is_even and self.work.has_lattice:
+            self.refiner.go_depth_first()
         if not self.refiner.run():
             return False
         return Sizing(self.refiner, size, feature, self.gradation).confirm()

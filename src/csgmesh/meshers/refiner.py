@@ -67,7 +67,7 @@ class Refiner:
         self.curve_data = domain.curves.data.reshape(-1).copy()
         self.buckets = np.full((2, N_BUCKETS), -1, np.int32)
         self.items = np.empty(3 * 4096, np.int32)
-        self.state = np.array([-1, 0, N_BUCKETS - 1, 0, work.has_lattice], np.int64)
+        self.state = np.array([-1, 0, N_BUCKETS - 1, 0, 0], np.int64)
         self.todo = np.empty(3 * 2048, np.int32)
         self.size = np.empty(1)
         self.home = np.empty(1, np.int32)
@@ -121,6 +121,10 @@ class Refiner:
                 + " another segment lies between the curve and its chord"
             )
         return status != BUDGET
+
+    def go_depth_first(self) -> None:
+        """Treat triangles with edges of one length last in, first out: see the queue."""
+        self.state[4] = 1
 
     def set_uniform(self, size: float) -> None:
         """Want the same edge length everywhere."""

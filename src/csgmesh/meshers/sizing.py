@@ -16,13 +16,15 @@ POINTS_PER_AREA = 2.0 / np.sqrt(3.0)
 #: A mesh is given up before it is made when its sizes ask for this many times the budget.
 OVER_BUDGET = 1.5
 #: Sizes that turn out smaller than expected by more than this share are refined for once more.
-SURPRISE = 0.8
+SURPRISE = 0.75
 #: Size at the ends of a segment of the domain, as a share of its length: a short segment, or a
 #: short chord of a sharply curved boundary, is a feature from which sizes grow.
 FEATURE_SHARE = 1.5
 LAST_ROUNDS = 8
 #: How much coarser than wanted the mesh is that first finds out the sizes.
 COARSE = 4.0
+#: The same where few points are asked for, so that sizes may be found out with more care.
+LESS_COARSE, FEW_POINTS = 2.5, 50_000
 
 
 def feature_sizes(domain: Pslg) -> np.ndarray:
@@ -47,6 +49,7 @@ class Sizing:
         self.size = size
         self.gradation = gradation
         self.known = 0
+        self.expected = np.inf
         domain = refiner.work.domain
         self.largest = domain.diagonal
         self.feature = feature
@@ -60,7 +63,9 @@ class Sizing:
                 return False
             edge *= 0.5
             smallest = self.smallest()
-        return self.settle(COARSE)
+        if not self.settle(COARSE):
+            return False
+        return self.expected > FEW_POINTS or self.settle(LESS_COARSE)
 
     def confirm(self) -> bool:
         """Refine where exact sizes are much smaller than those refined for."""
@@ -104,7 +109,7 @@ class Sizing:
     def check_budget(self) -> None:
         """Refuse at once what cannot be done within the budget."""
         work, refiner = self.refiner.work, self.refiner
-        expected = kernels.expected_points(
+        self.expected = expected = kernels.expected_points(
             work.points,
             work.origin,
             work.twin,
