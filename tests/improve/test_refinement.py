@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 from refinable import SHAPES, mesh_of, quads
 
 import csgmesh as cm
+from csgmesh.domain.curves import Curves
 from csgmesh.errors import InputError, MeshingError
 from csgmesh.mesh import Mesh
 
@@ -187,6 +188,36 @@ def test_a_curve_that_would_turn_cells_over_makes_room_or_is_refused() -> None:
             assert cm.check(mesh, shape).ok
     except MeshingError as error:
         assert "cannot follow the exact boundary" in str(error)
+
+
+def test_facets_across_a_narrow_gap_are_halved_together() -> None:
+    # A wedge of a disk, and across a gap far narrower than the chords' deviation a cell with a
+    # hollow side: the wedge's new vertex on its circle would lie in that cell.
+    angle = np.radians([60, 120])
+    rim = np.column_stack([np.cos(angle), np.sin(angle)])
+    points = np.concatenate([[[0, 0]], 0.999 * rim, rim, [[0, 2.5]]])
+    mesh = Mesh(
+        points,
+        {"triangle": [[0, 1, 2], [4, 3, 5]]},
+        facets={"line": [[0, 1], [1, 2], [2, 0], [4, 3], [3, 5], [5, 4]]},
+        facet_marker={"line": [0] * 6},
+        facet_region={"line": [[0, -1]] * 6},
+        boundary_names=[["rim"]],
+        facet_curve={"line": [-1, 0, -1, 1, -1, -1]},
+        facet_interval={"line": [[0, 0], angle, [0, 0], angle[::-1], [0, 0], [0, 0]]},
+        curves=Curves.arcs(
+            np.zeros((2, 2)),
+            np.array([[0.999, 0], [1, 0]]),
+            np.array([[0, 0.999], [0, 1]]),
+            angle[0],
+            angle[1],
+        ),
+    )
+    fine = cm.refine(mesh, [0])
+    assert cm.check(fine)["overlap"].status == "passed"
+    assert fine.n_cells == 4 + 2
+    on_top = fine.points[np.abs(fine.points[:, 0]) < 1e-12, 1]
+    assert np.sort(on_top) == pytest.approx([0, 0.999, 1, 2.5], abs=1e-15)
 
 
 def test_what_cannot_be_refined_is_refused() -> None:

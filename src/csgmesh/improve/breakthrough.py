@@ -42,22 +42,22 @@ def broken_through(work: Workpiece | Stars) -> np.ndarray:
     pairs = Boxes(others.min(axis=1), others.max(axis=1)).overlapping(
         corners.min(axis=1), corners.max(axis=1)
     )
-    pairs = pairs[_is_apart(facets[pairs[:, 1]], quads[pairs[:, 0], :3])]
+    pairs = pairs[share_no_end(facets[pairs[:, 1]], quads[pairs[:, 0], :3])]
     quad, ends = quads[pairs[:, 0]], facets[pairs[:, 1]]
     hit = np.zeros(len(pairs), bool)
     for side in ((0, 1), (1, 2)):
-        hit |= _meet(points, quad[:, side], ends)
+        hit |= segments_meet(points, quad[:, side], ends)
         for end in (0, 1):
             hit |= _within(points, quad[:, (*side, 3)], ends[:, end])
     return np.unique(slid[pairs[hit, 0]])
 
 
-def _is_apart(ends: np.ndarray, near: np.ndarray) -> np.ndarray:
+def share_no_end(ends: np.ndarray, near: np.ndarray) -> np.ndarray:
     """Whether facets (k, 2) have no vertex among (k, 3)."""
     return np.asarray((ends[:, :, None] != near[:, None, :]).all(axis=(1, 2)))
 
 
-def _meet(points: np.ndarray, a: np.ndarray, b: np.ndarray) -> np.ndarray:
+def segments_meet(points: np.ndarray, a: np.ndarray, b: np.ndarray) -> np.ndarray:
     """Whether segments a (k, 2) and b (k, 2) without common ends meet, exactly."""
     sides = [
         kernels.orientations(points, np.column_stack([p, q[:, k]]))

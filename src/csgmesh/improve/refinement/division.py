@@ -9,6 +9,7 @@ import numpy as np
 from csgmesh import kernels
 from csgmesh.improve.cell_edges import CellEdges
 from csgmesh.improve.refinement.boundary import halve_facets
+from csgmesh.improve.refinement.crossings import crossed_facets
 from csgmesh.improve.refinement.dividing import Children
 from csgmesh.improve.refinement.green import Block, undo_green
 from csgmesh.improve.refinement.promise import refined_info
@@ -59,17 +60,29 @@ class Division:
         watch = self._hanging()
         if marked is not None or watch is not None:
             self._spread(watch)
+            self._make_way(watch)
 
     def mark_edges(self, pairs: np.ndarray) -> None:
         """Halve these edges, and others as conformity asks."""
         self.halved[self.edges.find(pairs)] = 1
         self._spread(None)
+        self._make_way(None)
 
     def _spread(self, watch: np.ndarray | None) -> None:
         limit = [np.full(len(b.rows), b.rows.shape[1] - 1) for b in self.blocks.values()]
         self.edges.spread(self.halved, np.concatenate(limit), self.reference, watch)
         while self._halve_partners():
             self.edges.spread(self.halved, np.concatenate(limit), self.reference, watch)
+
+    def _make_way(self, watch: np.ndarray | None) -> None:
+        """Halve facets that others would run into, too."""
+        edge = self.edges.facet_edge
+        while len(edge):
+            found = crossed_facets(self.mesh, self.halved[edge] != 0)
+            if not len(found):
+                return
+            self.halved[edge[found]] = 1
+            self._spread(watch)
 
     def _halve_partners(self) -> bool:
         """Halve the partners of halved facets on periodic sides; whether there were any."""
