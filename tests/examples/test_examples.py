@@ -129,6 +129,17 @@ def test_quads(run):
     check_picture(folder / "quads.png")
 
 
+def test_adaptive_corner(run):
+    printed, folder = run("adaptive_corner")
+    adapted, uniform = (
+        float(re.search(rf"{name}: order (\S+)", printed)[1]) for name in ("adapted", "uniform")
+    )
+    assert adapted == pytest.approx(-1, abs=0.1)
+    assert uniform > -0.75
+    assert "H1 error" in printed
+    check_picture(folder / "adaptive_corner.png")
+
+
 @pytest.mark.parametrize("path", sorted(EXAMPLES.glob("*.yaml")), ids=lambda path: path.stem)
 def test_domain_files(path):
     file = cm.load(path)

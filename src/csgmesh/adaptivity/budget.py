@@ -138,18 +138,13 @@ class _Search:
         mesher: Any = self.mesher
         most = max(_TOO_MANY * cells, 1000)
         known = is_dataclass(mesher) and "max_points" in {f.name for f in fields(mesher)}
-        if known and most < mesher.max_points:
+        if known and most < mesher.max_points and not self._is_loose(factor):
             mesher = replace(mesher, max_points=most)
         try:
             mesh = mesher.generate(self.domain, size, self.progress)
-        except BudgetError as error:
-            if mesher is self.mesher or self._is_loose(factor):
-                count = error.mesh.n_cells if error.mesh is not None else most
-                raise BudgetError(
-                    f"{cells} cells are too few: with no size at all to follow, more than {count} "
-                    "are needed",
-                    error.mesh,
-                ) from None
+        except BudgetError:
+            if mesher is self.mesher:
+                raise
             return None, most
         return mesh, mesh.n_cells
 
