@@ -10,6 +10,7 @@ import numpy as np
 from csgmesh.domain.pslg import Pslg
 from csgmesh.errors import BudgetError, InputError
 from csgmesh.improve import optimise, smooth
+from csgmesh.improve.squaring import square_up
 from csgmesh.measures import quality
 from csgmesh.mesh import Mesh
 from csgmesh.meshers.quadtree_cells import mixed_mesh, quad_mesh, triangle_mesh
@@ -58,8 +59,8 @@ class Quadtree:
     max_points : int, default 10**7
         Bound on the number of leaves, which is about that of the points.
     improve : bool, default False
-        Whether to raise the smallest angles of the whole mesh afterwards, to 39 degrees where the
-        boundary lets them.
+        Whether to raise the smallest angles of the whole mesh afterwards, of triangles to 39
+        degrees where the boundary lets them; vertices then slide along their curves.
 
     Raises
     ------
@@ -154,7 +155,8 @@ class Quadtree:
         wanted = resolve(size, domain)
         width = max(int(np.ceil(GROWTH / self.gradation - 1e-9)), 1)
         scale = {"triangle": UNIFORM, "mixed": 1.0, "quad": 2.0}[self.cells]
-        run = Run(domain, wanted, scale, width, self.max_points, WANTED, progress)
+        parts = 2 if self.cells == "quad" else 1
+        run = Run(domain, wanted, scale, width, self.max_points, WANTED, progress, parts)
         info: dict[str, object] = {"method": "Quadtree", "options": asdict(self)}
         if self.cells == "quad":
             return self._quads(run, info, progress)
@@ -180,7 +182,11 @@ class Quadtree:
             mesh = quad_mesh(run, info, progress)
             folded = np.flatnonzero(quality(mesh).scaled_jacobian <= 0)
             if not len(folded):
-                return smooth(mesh, "optimize", progress=progress) if self.improve else mesh
+                if not self.improve:
+                    return mesh
+                # The first lets vertices slide along the boundary, the second evens out.
+                better = smooth(mesh, "optimize", sweeps=2, progress=progress)
+                return square_up(better, progress=progress)
             corners = mesh.points[mesh.cells["quad"][folded]]
             run.refine(corners)
         x, y = corners[0].mean(axis=0)

@@ -6,6 +6,7 @@ import numpy as np
 
 from csgmesh.domain.handmade import FaceOracle
 from csgmesh.domain.pslg import Pslg
+from csgmesh.meshers.quadtree_sampling import bent_segments
 from csgmesh.meshers.subdivision import Subdivision, pieces_by_turning, subdivide
 from csgmesh.size.resolve import ResolvedSize, evaluate
 from csgmesh.tree import LinearTree
@@ -70,10 +71,17 @@ class Grower:
     size : ResolvedSize or None
     scale : float
         Leaves wanted, as a share of the size.
+    budget : int
+        Bound on the number of leaves.
+    parts : int
+        Into how many parts each edge along a curve will be cut afterwards.
     """
 
-    def __init__(self, domain: Pslg, size: ResolvedSize | None, scale: float, budget: int) -> None:
+    def __init__(
+        self, domain: Pslg, size: ResolvedSize | None, scale: float, budget: int, parts: int
+    ) -> None:
         self.domain, self.size, self.scale, self.budget = domain, size, scale, budget
+        self.chord = np.where(bent_segments(domain), parts, 1) * domain.lengths()
         self.uniform = None if size is None else size.uniform
         side = None if self.uniform is None else scale * self.uniform
         self.root, self.level = root_of(domain, side)
@@ -105,8 +113,7 @@ class Grower:
             return parts
         middle = subdivide(domain, np.full(domain.n_segments, 2)).points[domain.n_points :]
         wanted = np.full(domain.n_segments, np.inf)
-        bent = domain.segment_curve >= 0
-        bent[bent] = domain.curves.kind[domain.segment_curve[bent]] > 0
+        bent = bent_segments(domain)
         if size.default is not None:
             wanted[bent] = evaluate(size.default, middle[bent])
         for markers, source in size.boundary:
@@ -118,7 +125,7 @@ class Grower:
     def _features(self, pieces: Subdivision) -> Features:
         domain, segment = self.domain, pieces.segment
         ends = pieces.points[pieces.ends]
-        wanted = SEGMENT * domain.lengths()[segment]
+        wanted = SEGMENT * self.chord[segment]
         middle = ends.mean(axis=1)
         loose = np.flatnonzero(domain.point_marker >= 0)
         if self.size is not None:
@@ -226,9 +233,7 @@ class Grower:
     def _cut_long(self, pieces: Subdivision, tree: LinearTree) -> bool:
         """Double the pieces of bent segments beside smaller leaves; whether there were any."""
         domain = self.domain
-        curve = domain.segment_curve[pieces.segment]
-        bent = np.flatnonzero(curve >= 0)
-        bent = bent[domain.curves.kind[curve[bent]] > 0]
+        bent = np.flatnonzero(bent_segments(domain)[pieces.segment])
         ends = pieces.points[pieces.ends[bent]]
         length = np.hypot(*(ends[:, 1] - ends[:, 0]).T)
         leaf = tree.leaf_of(ends.mean(axis=1))

@@ -56,10 +56,12 @@ class Run:
         max_points: int,
         bound: float,
         progress: Progress | None,
+        parts: int = 1,
     ) -> None:
         self.domain, self.size, self.width = domain, size, width
         self.max_points, self.bound, self.progress = max_points, bound, progress
-        self.grower = Grower(domain, size, scale, max_points)
+        self.parts = parts
+        self.grower = Grower(domain, size, scale, max_points, parts)
         self.corners = sharp_corners(domain)
         self.rigid = np.zeros(domain.n_segments, bool)
 
@@ -88,13 +90,15 @@ class Run:
         """Tree, boundary and strip, finer where edges of the boundary are in each other's way."""
         for _ in range(ROUNDS):
             growth = self.grower.grown(self.width)
-            strands = Strands(self.domain, self.rigid)
+            strands = Strands(self.domain, self.rigid, self.parts)
             self.samples = strands.sampled(growth.tree, self.corners)
             hidden = folded(self.domain, self.samples)
             if (hidden & ~self.rigid).any():
                 # On a hairpin only the domain's own vertices tell one side from the other.
                 self.rigid |= hidden
-                self.samples = Strands(self.domain, self.rigid).sampled(growth.tree, self.corners)
+                self.samples = Strands(self.domain, self.rigid, self.parts).sampled(
+                    growth.tree, self.corners
+                )
             self.grid = sorted_grid(growth.tree, growth.region, self.samples, growth.region_of)
             try:
                 self.strip = triangulated_strip(self.domain, self.grid, self.samples, self.progress)

@@ -20,6 +20,8 @@ MOST_PIECES = 64
 #: Rounds in which strands are cut more finely until their chords keep to the deviation.
 ROUNDS = 12
 CLOSER = 1.3
+#: What halved chords may stray, as a share of what even curves would let them.
+UNEVEN = 0.85
 #: Share of its shortest strand that the shell of a sharp corner may take.
 SHELL = 0.45
 
@@ -58,10 +60,12 @@ class Strands:
     domain : Pslg
     rigid : (m,) bool
         Segments whose vertices stay in any case.
+    parts : int
+        Into how many parts each edge along a curve will be cut afterwards.
     """
 
-    def __init__(self, domain: Pslg, rigid: np.ndarray) -> None:
-        self.domain = domain
+    def __init__(self, domain: Pslg, rigid: np.ndarray, parts: int) -> None:
+        self.domain, self.parts = domain, parts
         m, n = domain.n_segments, domain.n_points
         first, second, self.is_fixed = _joints(domain, rigid)
         count, label = graphs.components(m, first, second)
@@ -74,9 +78,7 @@ class Strands:
         self.end = np.r_[self.begin[1:], m]
         self.is_fixed[domain.segments[self.order[self.begin], 0]] = True
         self.is_fixed[domain.segments[self.order[self.end - 1], 1]] = True
-        self.is_bent = np.zeros(m, bool)
-        curved = domain.segment_curve >= 0
-        self.is_bent[curved] = domain.curves.kind[domain.segment_curve[curved]] > 0
+        self.is_bent = bent_segments(domain)
         self.closer = np.ones(count)
         used = np.zeros(n, bool)
         used[domain.segments] = True
@@ -103,6 +105,8 @@ class Strands:
         bent = np.flatnonzero(self.is_bent[samples.segment])
         if domain.deviation <= 0 or not len(bent):
             return out
+        # Half a chord strays a quarter as far, or a little more where the curve bends unevenly.
+        allowed = domain.deviation if self.parts == 1 else UNEVEN * self.parts**2 * domain.deviation
         a, b = (samples.points[samples.ends[bent, k]] for k in (0, 1))
         chord = b - a
         length = np.maximum(np.hypot(*chord.T), np.finfo(float).tiny)
@@ -110,7 +114,7 @@ class Strands:
             t = samples.interval[bent] @ [1 - share, share]
             arm = domain.curves.points(domain.segment_curve[samples.segment[bent]], t) - a
             away = np.abs(chord[:, 0] * arm[:, 1] - chord[:, 1] * arm[:, 0]) / length
-            out[bent] |= away > domain.deviation
+            out[bent] |= away > allowed
         return out
 
     def _pieces(self, tree: LinearTree) -> np.ndarray:
@@ -148,7 +152,7 @@ class Strands:
         strand[self.order] = self.strand
         # A chord is never much longer than those that the domain found necessary.
         spacing = (
-            np.where(self.is_bent[segment], np.minimum(size, length[segment]), size)
+            np.where(self.is_bent[segment], np.minimum(size, self.parts * length[segment]), size)
             / self.closer[strand[segment]]
         )
         turning = pieces_by_turning(domain)[segment] / length[segment]
@@ -259,6 +263,13 @@ class Strands:
         return Samples(
             points, kept, np.column_stack([vertex, after]), segment, np.column_stack([t, t_after])
         )
+
+
+def bent_segments(domain: Pslg) -> np.ndarray:
+    """Which segments stand for pieces of true curves, (m,) bool."""
+    out = domain.segment_curve >= 0
+    out[out] = domain.curves.kind[domain.segment_curve[out]] > 0
+    return out
 
 
 def leaf_sizes(tree: LinearTree, points: np.ndarray) -> np.ndarray:
