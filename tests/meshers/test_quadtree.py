@@ -91,6 +91,12 @@ def test_the_same_input_gives_the_same_bytes():
     assert cm.generate(shape, mesher(), size).equals(cm.generate(shape, mesher(), size))
 
 
+def test_curves_that_bulge_out_of_the_box_of_their_chords():
+    mesh = cm.generate(cm.Disk((0, 0), 1), cm.Quadtree(), 0.0085)
+    assert cm.quality(mesh).min_angle.min() >= 26
+    assert cm.check(mesh).ok
+
+
 def test_gradation_bounds_the_growth():
     shape, size = SHAPES["graded 1:100"]
     steep, gentle = (cm.generate(shape, mesher(gradation=g), size) for g in (0.5, 0.1))

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+import csgmesh as cm
 from csgmesh.errors import BudgetError, InputError
 from csgmesh.tree import LinearTree
 
@@ -73,6 +74,12 @@ def test_points_find_their_leaves():
     leaf = tree.leaf_of(points)
     assert ((lo[leaf] <= points) & (points < (lo + size)[leaf])).all()
     assert tree.leaf_of([(1.5, 0.5), (0.5, -1e-9)]).tolist() == [-1, -1]
+
+
+def test_a_picture_shows_every_leaf():
+    tree = around((0.3, 0.41))
+    figure = cm.draw(tree)
+    assert f"{tree.n_leaves} leaves" in figure.axes[0].get_title()
 
 
 def test_limits_are_errors_with_a_place():

@@ -6,7 +6,7 @@ import numpy as np
 
 from csgmesh.domain.handmade import FaceOracle
 from csgmesh.domain.pslg import Pslg
-from csgmesh.meshers.quadtree_sampling import bent_segments
+from csgmesh.meshers.quadtree_sampling import bent_segments, leaf_sizes, leaves_at
 from csgmesh.meshers.subdivision import Subdivision, pieces_by_turning, subdivide
 from csgmesh.size.resolve import ResolvedSize, evaluate
 from csgmesh.tree import LinearTree
@@ -25,6 +25,8 @@ SAMPLED = 32
 TOO_LONG = 1.5
 ROUNDS = 12
 MOST_PIECES = 4096
+#: Pieces of a bent segment whose ends tell how far it reaches.
+BOUNDS_PIECES = 16
 
 
 def cell_numbers(domain: Pslg, side: float | None) -> tuple[np.ndarray, np.ndarray]:
@@ -35,7 +37,7 @@ def cell_numbers(domain: Pslg, side: float | None) -> tuple[np.ndarray, np.ndarr
     side : float or None
         Wanted; without one, as few cells as come near to squares.
     """
-    lo, hi = domain.bounds()
+    lo, hi = curved_bounds(domain)
     width = hi - lo
     if side is None:
         tries = np.arange(1, 9)
@@ -54,12 +56,19 @@ def cell_numbers(domain: Pslg, side: float | None) -> tuple[np.ndarray, np.ndarr
     return cell, n.astype(np.int64)
 
 
+def curved_bounds(domain: Pslg) -> tuple[np.ndarray, np.ndarray]:
+    """Corners of the box of the domain's curves, which chords do not reach everywhere."""
+    parts = np.where(bent_segments(domain), BOUNDS_PIECES, 1)
+    points = subdivide(domain, parts).points
+    return points.min(axis=0), points.max(axis=0)
+
+
 def root_of(domain: Pslg, side: float | None) -> tuple[LinearTree, int]:
     """A root whose leaves of a level, which is returned too, are the cells of such a grid."""
     cell, n = cell_numbers(domain, side)
     # One cell more than needed: no vertex that counts lies on the far sides of the root.
     level = int(np.ceil(np.log2(n.max() + 1)))
-    return LinearTree.root(domain.bounds()[0], cell * 2.0**level), level
+    return LinearTree.root(curved_bounds(domain)[0], cell * 2.0**level), level
 
 
 class Grower:
@@ -176,7 +185,7 @@ class Grower:
         """Leaves larger than was asked for at points in them."""
         out = np.zeros(len(leaves), bool)
         for points, size in self.finer:
-            at = growth.tree.leaf_of(points)
+            at = leaves_at(growth.tree, points)
             row = np.minimum(np.searchsorted(leaves, at), len(leaves) - 1)
             here = leaves[row] == at
             row, size = row[here], size[here]
@@ -236,8 +245,7 @@ class Grower:
         bent = np.flatnonzero(bent_segments(domain)[pieces.segment])
         ends = pieces.points[pieces.ends[bent]]
         length = np.hypot(*(ends[:, 1] - ends[:, 0]).T)
-        leaf = tree.leaf_of(ends.mean(axis=1))
-        long = length > TOO_LONG * tree.extent.max() * np.exp2(-tree.level[leaf].astype(float))
+        long = length > TOO_LONG * leaf_sizes(tree, ends.mean(axis=1))
         segments = np.unique(pieces.segment[bent[long]])
         self.parts[segments] *= 2
         return bool(len(segments))

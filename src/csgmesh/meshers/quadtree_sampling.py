@@ -22,6 +22,8 @@ ROUNDS = 12
 CLOSER = 1.3
 #: What halved chords may stray, as a share of what even curves would let them.
 UNEVEN = 0.85
+#: A point is taken to lie no further across the root than this.
+INSIDE = 1 - 1e-12
 #: Share of its shortest strand that the shell of a sharp corner may take.
 SHELL = 0.45
 
@@ -272,11 +274,18 @@ def bent_segments(domain: Pslg) -> np.ndarray:
     return out
 
 
+def leaves_at(tree: LinearTree, points: np.ndarray) -> np.ndarray:
+    """Leaf at each point; what sticks out of the root by a rounding belongs to a leaf beside it."""
+    inside = np.clip(points, tree.lo, tree.lo + INSIDE * tree.extent)
+    leaf = np.empty(len(points), np.int64)
+    kernels.find_leaves(tree.key, inside.reshape(-1), tree.unit, leaf)
+    return leaf
+
+
 def leaf_sizes(tree: LinearTree, points: np.ndarray) -> np.ndarray:
     """Larger side of the leaf at each point."""
-    leaf = np.empty(len(points), np.int64)
-    kernels.find_leaves(tree.key, np.array(points).reshape(-1), tree.unit, leaf)
-    return tree.extent.max() * np.exp2(-tree.level[leaf].astype(float))
+    level = tree.level[leaves_at(tree, points)]
+    return tree.extent.max() * np.exp2(-level.astype(float))
 
 
 def _joints(domain: Pslg, rigid: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

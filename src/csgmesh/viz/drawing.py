@@ -15,7 +15,8 @@ from csgmesh.errors import FileFormatError, InputError
 from csgmesh.mesh import Mesh
 from csgmesh.options import check_choice, check_options, near
 from csgmesh.size import SizeField
-from csgmesh.viz.scene import Scene, mesh_scene, pslg_scene
+from csgmesh.tree import LinearTree
+from csgmesh.viz.scene import Scene, mesh_scene, pslg_scene, tree_scene
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -53,7 +54,7 @@ def draw(x: Any, path: str | os.PathLike[str] | None = None, **options: Any) -> 
 
     Parameters
     ----------
-    x : Shape, Regions, Embed, Periodic, Pslg, Plc, Mesh or SizeField
+    x : Shape, Regions, Embed, Periodic, Pslg, Plc, Mesh, LinearTree or SizeField
         What to draw; shapes are evaluated first. With `domain`, also a number, a mapping or a
         callable, as `generate` takes it for a size.
     path : str or PathLike, optional
@@ -115,7 +116,10 @@ def draw(x: Any, path: str | os.PathLike[str] | None = None, **options: Any) -> 
 
         return _kept(draw_space(x, chosen), target, chosen)
     _refuse_space_options(options)
-    scene = mesh_scene(x) if isinstance(x, Mesh) else pslg_scene(x, vertices=is_domain)
+    if isinstance(x, LinearTree):
+        scene = tree_scene(x)
+    else:
+        scene = mesh_scene(x) if isinstance(x, Mesh) else pslg_scene(x, vertices=is_domain)
     values = None
     if chosen.color == "min_angle":
         values = min_angles(scene)
@@ -186,7 +190,7 @@ def _target(path: Path) -> tuple[Path, str]:
 
 def _drawable(x: Any) -> Any:
     """A mesh or a domain: shapes are evaluated."""
-    if isinstance(x, Mesh | Pslg | Plc):
+    if isinstance(x, Mesh | Pslg | Plc | LinearTree):
         return x
     from csgmesh.boundary import evaluate
     from csgmesh.csg import Embed, Periodic, Regions, Shape

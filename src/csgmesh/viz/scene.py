@@ -12,6 +12,7 @@ from csgmesh.domain.pslg import Pslg
 from csgmesh.mesh import KINDS, Mesh
 from csgmesh.mesh.lagrange import basis
 from csgmesh.mesh.nodes import node_family
+from csgmesh.tree import LinearTree
 
 #: Straight pieces drawn for each segment of a curve: segments are already near their curve, so a
 #: few are enough for the eye.
@@ -123,6 +124,20 @@ def pslg_scene(domain: Pslg, *, vertices: bool) -> Scene:
         points=domain.points[is_marked],
         point_marker=domain.point_marker[is_marked],
         vertices=domain.points if vertices else np.zeros((0, 2)),
+    )
+
+
+def tree_scene(tree: LinearTree) -> Scene:
+    """Scene of a quadtree: its leaves."""
+    lo, size = tree.boxes()
+    corners = lo[:, None] + size[:, None] * np.array([[0, 0], [1, 0], [1, 1], [0, 1]])
+    return Scene(
+        tree.lo,
+        tree.lo + tree.extent,
+        ("tree",),
+        (),
+        f"{_count(tree.n_leaves, 'leaf')}".replace("leafs", "leaves"),
+        cells=[(corners, np.zeros(len(corners), np.int64))],
     )
 
 
