@@ -19,6 +19,7 @@ __version__ = "0.1.0"
 _HOME = {
     "csgmesh.adaptivity": ("Adaptation", "adapt", "generate_to_budget"),
     "csgmesh.boundary": ("evaluate",),
+    "csgmesh.comparison": ("Comparison", "compare"),
     "csgmesh.csg": (
         "Ball",
         "Box",
@@ -116,6 +117,7 @@ __all__ = [
     "Box",
     "BudgetError",
     "Certificate",
+    "Comparison",
     "Cone",
     "ConstrainedDelaunay",
     "CsgmeshError",
@@ -173,6 +175,7 @@ __all__ = [
     "Voronoi",
     "adapt",
     "check",
+    "compare",
     "delaunay",
     "delaunay_balls",
     "difference",
@@ -205,6 +208,7 @@ __all__ = [
 if TYPE_CHECKING:
     from csgmesh.adaptivity import Adaptation, adapt, generate_to_budget
     from csgmesh.boundary import evaluate
+    from csgmesh.comparison import Comparison, compare
     from csgmesh.csg import (
         Ball,
         Box,

@@ -121,6 +121,21 @@ def test_periodic_cell(run):
     check_picture(folder / "periodic_cell.png")
 
 
+def test_walls(run):
+    printed, folder = run("walls")
+    assert "8 layers" in printed
+    assert {"quad", "triangle"} <= set(meshio.read(folder / "walls.msh").cells_dict)
+    check_picture(folder / "walls.png")
+
+
+def test_hybrid(run):
+    printed, folder = run("hybrid")
+    for kind in ("triangles", "quads", "both"):
+        orders = [float(o) for o in re.findall(rf"{kind}.*order (\S+)", printed)]
+        assert orders and min(orders) > 1.7
+    check_picture(folder / "hybrid.png")
+
+
 def test_quads(run):
     printed, folder = run("quads")
     worst, mean = map(float, re.search(r"SICN from (\S+), (\S+) on", printed).groups())

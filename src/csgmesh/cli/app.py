@@ -8,6 +8,7 @@ import typer
 
 from csgmesh import __version__
 from csgmesh.cli.check import check
+from csgmesh.cli.compare import compare
 from csgmesh.cli.convert import convert
 from csgmesh.cli.draw import draw
 from csgmesh.cli.failures import reported
@@ -44,5 +45,5 @@ def _options(
     """Options before the command."""
 
 
-for command in (mesh, draw, check, quality, convert, schema):
+for command in (mesh, draw, check, quality, convert, compare, schema):
     app.command(command.__name__)(reported(command))

@@ -38,6 +38,7 @@ from csgmesh.errors import (
 )
 
 if TYPE_CHECKING:
+    from csgmesh.comparison import Comparison
     from csgmesh.mesh import Mesh
 
 _MOST_PROBLEMS = 10
@@ -124,6 +125,32 @@ class DomainFile:
                 f"the mesh has {mesh.n_cells} cells; a domain file may {self._allowance}", mesh
             )
         return mesh
+
+    def compare(self, progress: Callable[[str, int, int], None] | None = None) -> Comparison:
+        """The domain through every mesher of the plane, that of the file first.
+
+        Raises
+        ------
+        DomainFileError
+            A size for a name that the domain does not have, or that is not positive somewhere.
+        EvaluationError
+            The domain is empty or unbounded.
+        """
+        from csgmesh.comparison import compare, plane_meshers
+
+        meshers = {} if self.mesher is None else {"as the file says": self.mesher}
+        try:
+            return compare(
+                self.shape,
+                self.size,
+                meshers | plane_meshers(),
+                deviation=self.deviation,
+                snap=self.snap,
+                max_points=max(16, self.limits.cells // 2),
+                progress=progress,
+            )
+        except InputError as error:
+            raise self._placed(error) from None
 
     def mismatches(self, mesh: Mesh) -> list[tuple[Mismatch, str]]:
         """What a mesh has against the ``expect`` block, each with its ``file:line:column``."""

@@ -1,0 +1,238 @@
+"""One domain through every mesher that can take it."""
+
+from __future__ import annotations
+
+import time
+import tracemalloc
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, fields, replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from csgmesh.boundary import evaluate
+from csgmesh.errors import CsgmeshError, InputError
+
+if TYPE_CHECKING:
+    from csgmesh.domain.pslg import Pslg
+    from csgmesh.mesh import Mesh
+
+Progress = Callable[[str, int, int], None]
+
+#: Longest reason told in a table.
+_WIDEST = 70
+
+
+@dataclass(frozen=True)
+class Row:
+    """What became of a domain in one mesher.
+
+    Attributes
+    ----------
+    mesher : str
+    cells : str
+        Numbers of cells by kind.
+    worst, mean : float
+        Quality of the cells: the scaled Jacobian of quads; of triangles the sine of the smallest
+        angle over that of 60 degrees. 1 is best.
+    min_angle : float
+        Degrees.
+    seconds : float
+        Processor time of a second run, when everything is compiled.
+    megabytes : float
+        Most memory that was in use at once, as Python counts it, in millions of bytes.
+    size_error : float
+        Mean of abs(log(edge length / wanted length)); NaN without a size.
+    reason : str
+        Why there is no mesh; empty if there is one.
+    """
+
+    mesher: str
+    cells: str = ""
+    worst: float = np.nan
+    mean: float = np.nan
+    min_angle: float = np.nan
+    seconds: float = np.nan
+    megabytes: float = np.nan
+    size_error: float = np.nan
+    reason: str = ""
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """A row for each mesher; printed, a table."""
+
+    rows: tuple[Row, ...]
+
+    def __str__(self) -> str:
+        width = max(len(row.mesher) for row in self.rows)
+        kinds = max([5, *(len(row.cells) for row in self.rows)])
+        lines = [
+            f"{'mesher':<{width}}  {'cells':<{kinds}}  {'worst':>6}  {'mean':>6}  {'angle':>6}  "
+            f"{'seconds':>8}  {'MB':>7}  {'size error':>10}"
+        ]
+        for row in self.rows:
+            if row.reason:
+                lines.append(f"{row.mesher:<{width}}  cannot: {row.reason}")
+                continue
+            error = "" if np.isnan(row.size_error) else f"{row.size_error:.3f}"
+            lines.append(
+                f"{row.mesher:<{width}}  {row.cells:<{kinds}}  {row.worst:>6.3f}  {row.mean:>6.3f}"
+                f"  {row.min_angle:>6.2f}  {row.seconds:>8.4f}  {row.megabytes:>7.2f}  {error:>10}"
+            )
+        return "\n".join(lines)
+
+
+def compare(
+    shape: Any,
+    size: Any = None,
+    meshers: Mapping[str, Any] | None = None,
+    *,
+    deviation: float | None = None,
+    snap: float | None = None,
+    max_points: int | None = None,
+    progress: Progress | None = None,
+) -> Comparison:
+    """Mesh a shape by every mesher that can take it.
+
+    Parameters
+    ----------
+    shape : Shape, Regions, Embed or Pslg
+        What to mesh.
+    size : float, mapping, callable or SizeField, optional
+        Wanted edge length, as `generate` takes it.
+    meshers : mapping of str to mesher, optional
+        By the names to print. Default: all of the plane, with their own options.
+    deviation, snap : float, optional
+        As `generate` takes them.
+    max_points : int, optional
+        Bound on the points of each mesh.
+    progress : callable, optional
+        Called as ``progress(stage, done, total)``.
+
+    Returns
+    -------
+    Comparison
+        ``.rows``; printing it shows a table.
+
+    Raises
+    ------
+    InputError
+        If an argument breaks a rule, or the size names nothing.
+
+    Examples
+    --------
+    >>> import csgmesh as cm
+    >>> table = cm.compare(cm.Triangle((0, 0), (1, 0), (0, 1)), size=0.2)
+    >>> {row.mesher: row.reason[:32] for row in table.rows}["Structured"]
+    'a structured grid knows boxes wi'
+    """
+    from csgmesh.size import resolve
+
+    domain = evaluate(shape, deviation=deviation, snap=snap)
+    resolve(size, domain)
+    chosen = plane_meshers() if meshers is None else dict(meshers)
+    rows = []
+    for k, (name, mesher) in enumerate(chosen.items()):
+        if not callable(getattr(mesher, "generate", None)):
+            raise InputError(f"meshers must be objects such as QuadPairing(); got {mesher!r}")
+        if progress is not None:
+            progress(f"compare: {name}", k, len(chosen))
+        rows.append(_row(name, _bounded(mesher, max_points), domain, size))
+    return Comparison(tuple(rows))
+
+
+def plane_meshers() -> dict[str, Any]:
+    """Every mesher of the plane, some with two sets of options."""
+    from csgmesh import meshers as m
+
+    found: dict[str, Any] = {
+        "ConstrainedDelaunay": m.ConstrainedDelaunay(),
+        "DelaunayRefinement": m.DelaunayRefinement(),
+        "DelaunayRefinement, improved": m.DelaunayRefinement(improve=True),
+        "Quadtree": m.Quadtree(),
+        "QuadPairing": m.QuadPairing(),
+        "Structured": m.Structured(),
+        "Structured, triangles": m.Structured(cells="triangle"),
+    }
+    return found
+
+
+def _bounded(mesher: Any, max_points: int | None) -> Any:
+    if max_points is None or "max_points" not in {option.name for option in fields(mesher)}:
+        return mesher
+    return replace(mesher, max_points=min(mesher.max_points, max_points))
+
+
+def _row(name: str, mesher: Any, domain: Pslg, size: Any) -> Row:
+    from csgmesh.meshers import ConstrainedDelaunay
+
+    wanted = None if isinstance(mesher, ConstrainedDelaunay) else size
+    try:
+        # The first run compiles what is not compiled yet.
+        mesher.generate(domain, wanted)
+    except CsgmeshError as error:
+        reason = str(error)
+        return Row(name, reason=reason if len(reason) <= _WIDEST else reason[: _WIDEST - 1] + "…")
+    tracemalloc.start()
+    mesher.generate(domain, wanted)
+    memory = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    start = time.process_time()
+    mesh = mesher.generate(domain, wanted)
+    seconds = time.process_time() - start
+    return _measured(name, mesh, domain, wanted, seconds, memory / 1e6)
+
+
+def _measured(
+    name: str, mesh: Mesh, domain: Pslg, size: Any, seconds: float, megabytes: float
+) -> Row:
+    from csgmesh.measures import quality
+
+    measured = quality(mesh)
+    shape = np.where(
+        np.isnan(measured.scaled_jacobian),
+        np.sin(np.radians(measured.min_angle)) / np.sin(np.pi / 3),
+        measured.scaled_jacobian,
+    )
+    cells = ", ".join(f"{len(rows):,} {kind}s" for kind, rows in mesh.cells.items())
+    return Row(
+        name,
+        cells,
+        float(shape.min()),
+        float(shape.mean()),
+        float(measured.min_angle.min()),
+        seconds,
+        megabytes,
+        _size_error(mesh, domain, size),
+    )
+
+
+def _size_error(mesh: Mesh, domain: Pslg, size: Any) -> float:
+    """How far edges are from their wanted length; on named boundaries only where sizes are named.
+
+    Between named boundaries and what is around, the gradation decides what is wanted.
+    """
+    from csgmesh.mesh.topology import edges_of
+    from csgmesh.size import resolve
+
+    wanted = resolve(size, domain)
+    if wanted is None:
+        return np.nan
+    logs = [np.zeros(0)]
+    if wanted.boundary:
+        for markers, source in wanted.boundary:
+            rows = mesh.facets["line"][np.isin(mesh.facet_marker["line"], markers)]
+            logs.append(_logs(mesh.points, rows, source))
+    elif wanted.default is not None:
+        rows = edges_of(mesh.cells, mesh.n_points).points
+        logs.append(_logs(mesh.points, rows, wanted.default))
+    joined = np.concatenate(logs)
+    return float(joined.mean()) if len(joined) else np.nan
+
+
+def _logs(points: np.ndarray, rows: np.ndarray, wanted: Any) -> np.ndarray:
+    from csgmesh.size.resolve import evaluate as sizes_at
+
+    a, b = points[rows[:, 0]], points[rows[:, 1]]
+    return np.asarray(np.abs(np.log(np.hypot(*(b - a).T) / sizes_at(wanted, 0.5 * (a + b)))))
