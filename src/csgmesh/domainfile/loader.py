@@ -19,15 +19,16 @@ from csgmesh.domainfile.expect import Expect, Mismatch, mismatches
 from csgmesh.domainfile.expressions import Expression
 from csgmesh.domainfile.fields import ValidationContext
 from csgmesh.domainfile.limits import Limits
+from csgmesh.domainfile.methods import as_written, mesher_of, option_named_in
 from csgmesh.domainfile.outputs import check_suffix
 from csgmesh.domainfile.parameters import described, resolve_parameters
-from csgmesh.domainfile.parts import Part, Problem, problems_of
-from csgmesh.domainfile.schema import MeshPart, file_model
+from csgmesh.domainfile.parts import Problem, problems_of
+from csgmesh.domainfile.schema import file_model
 from csgmesh.domainfile.shapes import Builder, build_shapes, placed
 from csgmesh.domainfile.size_fields import build as build_size
 from csgmesh.domainfile.size_fields import place_in
 from csgmesh.domainfile.sizes import ExpressionSize, constant_or_size
-from csgmesh.domainfile.vocabulary import Arguments, mesher_classes
+from csgmesh.domainfile.vocabulary import mesher_classes
 from csgmesh.errors import (
     BudgetError,
     DomainFileError,
@@ -185,7 +186,7 @@ class DomainFile:
             text = size.expression.text if isinstance(size, ExpressionSize) else name
             if name and (repr(name) in message or repr(text) in message):
                 return self.document.error(message, ("mesh", "size", name), key=True)
-        inside = self._option_named_in(message)
+        inside = option_named_in(self.document, message)
         if inside is not None:
             return self.document.error(message, inside, key=True)
         for quoted in re.findall(r"'([^']+)'", message):
@@ -200,23 +201,6 @@ class DomainFile:
                 if self.document.has(("shapes", name)):
                     return self.document.error(message, ("shapes", name), key=True)
         return self.document.error(message, self._domain_path, key=True)
-
-    def _option_named_in(self, message: str) -> KeyPath | None:
-        """Place of the mesher's option, or of the name within it, that a message is about."""
-        given = self.document.data.get("mesh") or {}
-        key = next((str(key) for key in given if key in mesher_classes()), "")
-        options = given[key] if isinstance(given.get(key), dict) else {}
-        first = sorted(options.items(), key=lambda item: not message.startswith(item[0]))
-        for option, value in first:
-            if repr(option) in message:
-                return ("mesh", key, option)
-            names = value if isinstance(value, dict) else {}
-            for name in names:
-                if repr(name) in message and not message.startswith("size"):
-                    return ("mesh", key, option, name)
-            if re.match(rf"{option}\b", message):
-                return ("mesh", key, option)
-        return None
 
     @property
     def _domain_path(self) -> KeyPath:
@@ -284,7 +268,7 @@ def load(
     return DomainFile(
         path=path,
         shape=shape,
-        mesher=_mesher(document, mesh),
+        mesher=mesher_of(document, mesh),
         size=_size(document, mesh.size, shape.dim, values),
         deviation=mesh.deviation,
         snap=mesh.snap,
@@ -299,7 +283,7 @@ def load(
 def _joined(document: Document, problems: list[Problem]) -> DomainFileError:
     """One error for all that is wrong: the first place in the file leads."""
     errors = [
-        document.error(p.message, _as_written(document, p.path), key=p.is_key, offset=p.offset)
+        document.error(p.message, as_written(document, p.path), key=p.is_key, offset=p.offset)
         for p in problems
     ]
     errors.sort(key=lambda error: (error.line, error.column))
@@ -313,42 +297,11 @@ def _joined(document: Document, problems: list[Problem]) -> DomainFileError:
     return DomainFileError(listed, file=document.file, line=first.line, column=first.column)
 
 
-def _as_written(document: Document, path: KeyPath) -> KeyPath:
-    """A path without the key that a shorter way of writing leaves out."""
-    for k, step in enumerate(path):
-        if step == "meshers" and not document.has(path[: k + 1]):
-            return path[:k] + path[k + 1 :]
-    return path
-
-
 def _domain(part: Any, builder: Builder) -> Any:
     if part.regions is None:
         return builder.shape(part.domain, ("domain",))
     shapes = {n: builder.shape(s, ("regions", n)) for n, s in part.regions.items()}
     return builder.regions(shapes, ("regions",))
-
-
-def _mesher(document: Document, mesh: MeshPart) -> Any:
-    key = mesh.mesher
-    if key is None:
-        return None
-    return _made(document, ("mesh", key), getattr(mesh, key))
-
-
-def _made(document: Document, path: KeyPath, value: Any) -> Any:
-    """What arguments in a file make: a mesher, layers; values of other types stay."""
-    if isinstance(value, Arguments):
-        options = {k: _made(document, (*path, k), v) for k, v in value.given().items()}
-        make = value.builds
-        assert make is not None
-        return placed(document, path, lambda: make(**options))
-    if isinstance(value, Part):
-        key = value.keys_written[0]
-        return _made(document, (*path, key), getattr(value, key))
-    if isinstance(value, dict):
-        within = path if document.has(path) else path[:-1]
-        return {k: _made(document, (*within, k), v) for k, v in value.items()}
-    return value
 
 
 def _size(document: Document, size: Any, dim: int, parameters: Mapping[str, float]) -> Any:
