@@ -21,7 +21,6 @@ __all__ = ["cache_directory", "must_compile"]
 #: Exported name -> module that holds it.
 _HOME = {
     "insert_points": "delaunay",
-    "curve_keys": "delaunay",
     "insertion_order": "ordering",
     "recover_segments": "segments",
     "flood_regions": "segments",

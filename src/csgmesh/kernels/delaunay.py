@@ -1,8 +1,4 @@
-"""Delaunay triangulation of points, by insertion in rounds along a Hilbert curve.
-
-The rounds (BRIO: Amenta, Choi, Rote 2003) keep the cavities small whatever the input, the curve
-keeps the walk from one point to the next short.
-"""
+"""Delaunay triangulation of points, by insertion one after the other in a given order."""
 
 from __future__ import annotations
 
@@ -24,67 +20,8 @@ from .triangulation import (
     walk,
 )
 
-ORDER = np.int64(16)
-NUMBER_BITS = np.int64(28)
 ZERO = np.int64(0)
 FIRST_SIZE = np.int64(4)
-
-
-@njit(**HELPER)
-def hilbert(x, y):
-    """Distance along the Hilbert curve of the cell (x, y) of a 2^16 by 2^16 grid."""
-    d = ZERO
-    last = (1 << ORDER) - 1
-    s = 1 << (ORDER - 1)
-    while s > 0:
-        rx = 1 if x & s > 0 else 0
-        ry = 1 if y & s > 0 else 0
-        d += s * s * (3 * rx ^ ry)
-        if ry == 0:
-            if rx == 1:
-                x = last - x
-                y = last - y
-            x, y = y, x
-        s >>= 1
-    return d
-
-
-@njit(**ENTRY)
-def curve_keys(points, rounds, keys):
-    """keys[i] = (insertion round, place on the Hilbert curve, i) of points[i] as one integer.
-
-    Rounds, at most 8, are drawn by a fixed xorshift generator: each holds eight times as many
-    points as the one before. The number i, of 28 bits, makes keys differ: their order, and with it
-    every mesh, does not depend on how they are sorted.
-    """
-    xy = pointer(points)
-    key = pointer(keys)
-    n = keys.shape[0]
-    x0 = xy[0]
-    x1 = x0
-    y0 = xy[1]
-    y1 = y0
-    for i in range(n):
-        x = xy[2 * i]
-        y = xy[2 * i + 1]
-        x0 = min(x0, x)
-        x1 = max(x1, x)
-        y0 = min(y0, y)
-        y1 = max(y1, y)
-    width = max(x1 - x0, y1 - y0)
-    scale = 65535.0 / width if width > 0.0 else 0.0
-    state = np.uint64(88172645463325252)
-    for i in range(n):
-        state ^= state << np.uint64(13)
-        state ^= state >> np.uint64(7)
-        state ^= state << np.uint64(17)
-        level = rounds
-        draw = state >> np.uint64(20)
-        while level > 0 and draw & np.uint64(7) == 0:
-            level -= 1
-            draw >>= np.uint64(3)
-        place = hilbert(np.int64((xy[2 * i] - x0) * scale), np.int64((xy[2 * i + 1] - y0) * scale))
-        key[i] = (level << 32 | place) << NUMBER_BITS | i
 
 
 @njit(**HELPER)

@@ -16,6 +16,8 @@ GRID = np.int64(24)
 #: Bits that the rounds take, of which there are at most eight.
 ROUND_BITS = np.int64(3)
 ZERO = np.int64(0)
+#: Up to so many points are sorted by small digits, for which less has to be counted.
+FEW = 2000
 
 
 def _hilbert_table() -> np.ndarray:
@@ -89,7 +91,7 @@ def fill_keys(xy, n, rounds, bits, order, key):
 
 
 @njit(**ENTRY)
-def insertion_order(points, rounds, digit, counts, keys, spare, order_out, rank_out, sorted_out):
+def _insertion_order(points, rounds, digit, counts, keys, spare, order_out, rank_out, sorted_out):
     """Order points for insertion; order_out[r] = i, rank_out[i] = r, and the points in order.
 
     keys and spare (n,) int64 are scratch; counts holds 2^digit numbers. The sort is by digits of so
@@ -135,3 +137,38 @@ def insertion_order(points, rounds, digit, counts, keys, spare, order_out, rank_
         rank[i] = r
         ordered[2 * r] = xy[2 * i]
         ordered[2 * r + 1] = xy[2 * i + 1]
+
+
+def insertion_order(points: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Order points for insertion.
+
+    Parameters
+    ----------
+    points : (n, 2) float64
+        At most 2^28 points.
+
+    Returns
+    -------
+    order : (n,) int32
+        Numbers of the points in their order.
+    rank : (n,) int32
+        Place of each point in it.
+    ordered : (2 n,) float64
+        Their coordinates in order.
+
+    Examples
+    --------
+    >>> order, rank, ordered = insertion_order(np.array([[0, 0], [1, 0], [0, 1.0]]))
+    >>> order[rank]
+    array([0, 1, 2], dtype=int32)
+    """
+    n = len(points)
+    order, rank, ordered = np.empty(n, np.int32), np.empty(n, np.int32), np.empty(2 * n)
+    digit = 11 if n > FEW else 6
+    counts, keys, spare = np.empty(2**digit, np.int64), np.empty(n, np.int64), np.empty(n, np.int64)
+    # Few points need no more than one round.
+    rounds = min(7, max(n.bit_length() // 3 - 2, 0))
+    # A copy: read-only arrays are another type, for which the kernel would be compiled again.
+    flat = np.array(points, np.float64).reshape(-1)
+    _insertion_order(flat, rounds, digit, counts, keys, spare, order, rank, ordered)
+    return order, rank, ordered

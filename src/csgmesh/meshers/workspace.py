@@ -22,8 +22,6 @@ BOTH_APEXES = -2
 NO_TRIANGLE = 2**62
 #: Points of a domain: their numbers share a 64-bit key with their place on a curve.
 MOST_POINTS = 2**28
-#: Up to so many points are sorted by small digits, for which less has to be counted.
-FEW = 2000
 
 
 def grown(array: np.ndarray, size: int) -> np.ndarray:
@@ -41,11 +39,6 @@ def grown(array: np.ndarray, size: int) -> np.ndarray:
     return array
 
 
-def rounds(n: int) -> int:
-    """Rounds in which to insert n points: few points need no more than one."""
-    return min(7, max(n.bit_length() // 3 - 2, 0))
-
-
 class Workspace:
     """Constrained Delaunay triangulation of a domain, in the kernels' arrays.
 
@@ -60,22 +53,7 @@ class Workspace:
         n = len(pieces.points)
         if n > MOST_POINTS:
             raise MeshingError(f"a domain may have {MOST_POINTS} points; it has {n}")
-        self.order = np.empty(n, np.int32)
-        self.rank = np.empty(n, np.int32)
-        self.points = np.empty(2 * n)
-        digit = 11 if n > FEW else 6
-        kernels.insertion_order(
-            # A copy: read-only arrays are another type, for which kernels would be compiled again.
-            np.array(pieces.points).reshape(-1),
-            rounds(n),
-            digit,
-            np.empty(2**digit, np.int64),
-            np.empty(n, np.int64),
-            np.empty(n, np.int64),
-            self.order,
-            self.rank,
-            self.points,
-        )
+        self.order, self.rank, self.points = kernels.insertion_order(pieces.points)
         self.n_points = n
         self.n_triangles = 0
         #: Triangles from this one on are known to be good.

@@ -58,11 +58,8 @@ def triangulate(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     n = len(points)
     if n < 3:
         raise CollinearError(f"a triangulation needs three points; got {n}")
-    keys = np.empty(n, np.int64)
-    kernels.curve_keys(points.reshape(-1), min(7, max(n.bit_length() // 3 - 2, 0)), keys)
-    keys.sort()
-    order = keys & (_MOST_POINTS - 1)
-    xy = points.take(order, axis=0).reshape(-1)
+    order, _, xy = kernels.insertion_order(points)
+    order = order.astype(np.int64)
     origin, twin, sub = (np.empty(4 * (2 * n + 8), np.int32) for _ in range(3))
     work, counts = np.empty((5, _CAVITY), np.int32), np.zeros(8, np.int64)
     while True:
