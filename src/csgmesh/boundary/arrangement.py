@@ -101,6 +101,8 @@ def arrange(pieces: Pieces, frame: Frame, probes: np.ndarray, snap: float) -> Ar
     busy[2 * k :] = True
     for part in (meet.first, meet.second):
         busy[part] = busy[part + k] = True
+    if len(probes):  # An embedded point may lie on the end of any piece.
+        busy[:] = True
     representative = _clusters(cloud, _end_links(cloud[: 2 * k], pairs, snap), busy, snap)
     chosen, vertex = _numbered_from_zero(representative)
     piece = np.concatenate([np.arange(k), np.arange(k), meet.first, meet.second])

@@ -81,7 +81,10 @@ def _pslg(
         np.concatenate([segments.ravel(), arrangement.probe_vertex]), return_inverse=True
     )
     points = chords.points[used]
-    _refuse_outside(program, points[number[segments.size :]], probe_marker, names)
+    # Those on the boundary belong to the domain, whatever rounding says of their membership.
+    probe = number[segments.size :]
+    inner = np.flatnonzero(~np.isin(probe, number[: segments.size]))
+    _refuse_outside(program, points[probe[inner]], probe_marker[inner], names)
     point_marker = np.full(len(used), -1)
     point_marker[number[segments.size :]] = probe_marker
     curves, curve = np.unique(kept.source, return_inverse=True)
