@@ -67,6 +67,7 @@ def quads(n: int, noise: float = 0.0, triangles: bool = False) -> Mesh:
     )
 
 
+@functools.cache
 def with_quads(name: str) -> Mesh:
     """A mesh of the catalogue with pairs of its triangles joined to quads where they fit."""
     mesh = mesh_of(name)
