@@ -143,3 +143,10 @@ def test_domain_file(tmp_path) -> None:
         "mesh: {quad_pairing: {sweeps: 3}, size: 0.2}}"
     )
     assert list(cm.load(path).generate().cells) == ["quad"]
+
+
+@pytest.mark.parametrize("mesher", [cm.QuadPairing(), cm.Structured()])
+def test_periodic_sides_are_refused(mesher) -> None:
+    cell = cm.Periodic(cm.Box((0, 0), (1, 1), name="c"), [("c.left", "c.right")])
+    with pytest.raises(InputError, match="periodic sides alike; use DelaunayRefinement"):
+        cm.generate(cell, mesher, size=0.2)

@@ -131,6 +131,8 @@ class QuadPairing:
         SizeError, NameLookupError
             If the size is not positive and finite somewhere, or names nothing.
         """
+        if domain.periodic:
+            raise InputError("QuadPairing cannot mesh periodic sides alike; use DelaunayRefinement")
         limits = self.min_angle, self.gradation, max(self.max_points // 4, 3)
         wanted = resolve(size, domain)
         outline = joined_chords(domain)

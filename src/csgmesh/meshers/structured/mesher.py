@@ -132,6 +132,8 @@ class Structured:
         BudgetError
             If it would have more than `max_points` points.
         """
+        if domain.periodic:
+            raise InputError("Structured cannot mesh periodic sides alike; use DelaunayRefinement")
         report = progress or (lambda stage, done, total: None)
         wanted = resolve(size, domain)
         report("recognise blocks", 0, 1)
