@@ -36,6 +36,20 @@ def triangle_package(domain: Pslg, area: float, min_angle: float = 30.0) -> Arra
     return out["vertices"], out["triangles"]
 
 
+def triangle_inside(domain: Pslg, min_angle: float) -> Arrays:
+    """Triangle without a size, kept out of whatever is outside the domain."""
+    import triangle
+
+    given = for_triangle(domain)
+    coarse = triangle.triangulate(given, "pQ")
+    middles = coarse["vertices"][coarse["triangles"]].mean(axis=1)
+    outside = middles[domain.oracle.region(middles) < 0] if domain.oracle is not None else []
+    if len(outside):
+        given["holes"] = outside
+    out = triangle.triangulate(given, f"pq{min_angle:g}Q")
+    return out["vertices"], out["triangles"]
+
+
 def triangle_graded(
     domain: Pslg, size: Callable[[np.ndarray], np.ndarray], min_angle: float = 30.0
 ) -> Arrays:
@@ -73,9 +87,12 @@ def gmsh_frontal(domain: Pslg, size: float) -> Arrays:
         geo.addPoint(x, y, 0.0, size, k + 1)
     for k, (a, b) in enumerate(domain.segments.tolist()):
         geo.addLine(a + 1, b + 1, k + 1)
-    chain = _in_order(domain.segments)
-    geo.addCurveLoop((chain + 1).tolist(), 1)
-    geo.addPlaneSurface([1], 1)
+    loops = _loops(domain.segments)
+    for k, chain in enumerate(loops):
+        geo.addCurveLoop((chain + 1).tolist(), k + 1)
+    # The outer loop is the longest way around; the others are holes.
+    order = sorted(range(len(loops)), key=lambda k: -_reach(domain, loops[k]))
+    geo.addPlaneSurface([k + 1 for k in order], 1)
     geo.synchronize()
     gmsh.model.mesh.generate(2)
     tags, xyz, _ = gmsh.model.mesh.getNodes()
@@ -86,13 +103,22 @@ def gmsh_frontal(domain: Pslg, size: float) -> Arrays:
     return xyz.reshape(-1, 3)[:, :2], number[nodes.astype(np.int64)].reshape(-1, 3)
 
 
-def _in_order(segments: np.ndarray) -> np.ndarray:
-    """Segments of a single loop, one after the other."""
+def _loops(segments: np.ndarray) -> list[np.ndarray]:
+    """Segments of each loop, one after the other."""
     starting_at = {int(a): k for k, (a, _) in enumerate(segments)}
-    chain = [0]
-    while len(chain) < len(segments):
-        chain.append(starting_at[int(segments[chain[-1], 1])])
-    return np.array(chain)
+    left, found = set(range(len(segments))), []
+    while left:
+        chain = [min(left)]
+        while (onward := starting_at[int(segments[chain[-1], 1])]) != chain[0]:
+            chain.append(onward)
+        left -= set(chain)
+        found.append(np.array(chain))
+    return found
+
+
+def _reach(domain: Pslg, chain: np.ndarray) -> float:
+    """How far a loop extends."""
+    return float(np.ptp(domain.points[domain.segments[chain]].reshape(-1, 2), axis=0).max())
 
 
 def equilateral(edge: Any) -> Any:

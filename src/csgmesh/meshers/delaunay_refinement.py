@@ -63,23 +63,32 @@ class DelaunayRefinement:
     Every segment is a union of edges, and each of their vertices lies on the segment's exact curve.
     No angle is smaller than `min_angle`, except as below. The triangulation is constrained
     Delaunay. Edge lengths follow the size where the domain's features do not ask for shorter
-    ones. Regions and names are those of the domain. The same input gives the same bytes.
+    ones. Regions and names are those of the domain. Sides of a `csgmesh.Periodic` domain get the
+    same vertices. The same input gives the same bytes.
 
     Exceptions
     ----------
     Cells with a vertex at the apex of an input angle below 60 degrees, or within its protected
     shell (see `csgmesh.domain.input_angles`), may have smaller angles: along two segments that
     leave a vertex at a small angle, new vertices lie on common circles around it, and the edges
-    between them are left alone. Edges a few units in the last place long are not divided.
+    between them are left alone. Edges a few units in the last place long are not divided. On
+    periodic sides the shells of an apex are repeated at its images.
     With `improve` the triangulation is not Delaunay in places. With `layers` there is no bound on
     angles: layers are as thin as asked for.
 
     Termination
     -----------
-    Proved for `min_angle` up to 20.7 degrees (Ruppert) for segments at 90 degrees or more, and with
-    concentric shells for any input angles (Miller, Pav, Walkington); in practice it ends at 33
-    degrees on nearly all inputs. Elsewhere the budget of points ends it with a `BudgetError` which
-    carries the mesh so far.
+    Proved, for straight segments and without a size, with numbers of triangles that are optimal up
+    to a constant: Ruppert's algorithm up to 20.7 degrees, where segments meet at 90 degrees or
+    more [1]_, or at 60 [2]_; Chew's second, which guards subsegments by lenses and removes
+    vertices from their circles, up to 26.5 degrees [2]_, with off-centres up to 28.6 [7]_; with
+    concentric shells, for any input angles, but not beside small ones [4]_. What runs here is
+    Ruppert's algorithm with off-centres, shells and, without a size, Chew's lenses, but vertices
+    stay once they are there: no proof covers it to the letter.
+
+    Practice: 30 degrees, and 33 on nearly all inputs, those with curves too, whose subsegments turn
+    by no more than 50 degrees from the start. Where it does not end, or features ask for more than
+    `max_points`, a `BudgetError` names the place and carries the mesh so far.
 
     References
     ----------
@@ -94,6 +103,8 @@ class DelaunayRefinement:
        Bowyer-Watson algorithm", J. Computational Physics 106 (1993).
     .. [6] D. Engwirda, D. Ivers, "Off-centre Steiner points for Delaunay-refinement on curved
        surfaces", Computer-Aided Design 72 (2016).
+    .. [7] A. Rand, "Where and how Chew's second Delaunay refinement algorithm works", Canadian
+       Conference on Computational Geometry (2011).
 
     Examples
     --------
