@@ -40,14 +40,21 @@ def triangle_inside(domain: Pslg, min_angle: float) -> Arrays:
     """Triangle without a size, kept out of whatever is outside the domain."""
     import triangle
 
-    given = for_triangle(domain)
-    coarse = triangle.triangulate(given, "pQ")
-    middles = coarse["vertices"][coarse["triangles"]].mean(axis=1)
-    outside = middles[domain.oracle.region(middles) < 0] if domain.oracle is not None else []
-    if len(outside):
-        given["holes"] = outside
-    out = triangle.triangulate(given, f"pq{min_angle:g}Q")
+    out = triangle.triangulate(holed(domain), f"pq{min_angle:g}Q")
     return out["vertices"], out["triangles"]
+
+
+def holed(domain: Pslg) -> dict[str, np.ndarray]:
+    """A domain's chords, and points outside beside them, from which Triangle eats holes."""
+    given = for_triangle(domain)
+    start, end = (domain.points[domain.segments[:, k]] for k in (0, 1))
+    across = (end - start) @ np.array([[0.0, -1.0], [1.0, 0.0]])
+    outer = (domain.segment_region < 0).any(axis=1)
+    near = [(0.5 * (start + end) + share * across)[outer] for share in (1e-3, 1e-10)]
+    points = np.concatenate(near)
+    assert domain.oracle is not None
+    points = points[domain.oracle.region(points) < 0]
+    return given | {"holes": points} if len(points) else given
 
 
 def triangle_graded(

@@ -111,11 +111,8 @@ def _spiral(turns: int, n: int) -> Pslg:
     return loops(np.vstack([inner, outer[::-1]]))
 
 
-def _nested(gap: float) -> Pslg:
-    def box(w: float) -> list[tuple[float, float]]:
-        return [(-w, -w), (w, -w), (w, w), (-w, w)]
-
-    return loops(box(2), box(1), box(1 - gap))
+def _box(w: float) -> Loop:
+    return [(-w, -w), (w, -w), (w, w), (-w, w)]
 
 
 #: What a mesher may stumble over.
@@ -125,7 +122,8 @@ HARD = {
     "comb of 100 teeth": _comb(100),
     "spiral": _spiral(8, 400),
     "Koch snowflake, level 5": _koch(5),
-    "squares 1e-3 apart": _nested(1e-3),
+    "frame 1e-3 wide": loops(_box(1), _box(1 - 1e-3)),
+    "hole with an island 1e-9 inside": loops(_box(2), _box(1), _box(1 - 1e-9)),
     "square at 1e9": loops(1e9 + np.array([(0, 0), (1, 0), (1, 1), (0, 1)], float)),
     "needle": loops([(0, 0), (1, 0), (1, 1e-3), (0, 1e-3)]),
 }

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from peers import for_triangle, gmsh_frontal, measures, ours, triangle_inside
+from peers import gmsh_frontal, holed, measures, ours, triangle_inside
 from plane_domains import HARD, poly_samples, three_shapes
 from plane_lfs import integral
 
@@ -112,16 +112,20 @@ def letters(counts: list[int]) -> Rows:
     rows: Rows = []
     for who, mesher in (("csgmesh", _mesher(30.0)), ("improved", _mesher(30.0, improve=True))):
         worst = [float(cm.quality(mesher.generate(d)).min_angle.min()) for d in domains]
-        start = time.process_time()
-        for domain in domains:
-            mesher.generate(domain)
+        spent = statistics.median(_seconds(mesher, domains) for _ in range(5))
         rows.append({
             "mesher": who, "glyphs": len(domains), "mean of worst angles": statistics.mean(worst),
-            "median": statistics.median(worst), "worst": min(worst),
-            "processor s": time.process_time() - start,
+            "median": statistics.median(worst), "worst": min(worst), "processor s": spent,
         })  # fmt: skip
     rows[1]["times the default's time"] = rows[1]["processor s"] / rows[0]["processor s"]
     return rows
+
+
+def _seconds(mesher: Any, domains: list[Pslg]) -> float:
+    start = time.process_time()
+    for domain in domains:
+        mesher.generate(domain)
+    return time.process_time() - start
 
 
 def numbers(counts: list[int]) -> Rows:
@@ -179,23 +183,24 @@ def robustness(counts: list[int]) -> Rows:
         except CsgmeshError as error:
             row["error"] = f"{type(error).__name__}: {error}"
         else:
-            certificate = cm.check(mesh, domain)
+            row["processor s"] = time.process_time() - start
             below = int((cm.quality(mesh).min_angle < 30.0 - 1e-9).sum())
-            row |= {"triangles": mesh.n_cells, "below 30": below, "valid": certificate.ok}
-        row["processor s"] = time.process_time() - start
+            row |= {"triangles": mesh.n_cells, "below 30": below}
+            # Cells below the bound must be excused by an input angle.
+            row["valid"] = cm.check(mesh).ok
         # Triangle ends the process on some of these, so it runs in one of its own.
         row["Triangle"] = _apart(domain)
         rows.append(row)
     return rows
 
 
-def _apart(domain: Pslg, seconds: float = 60.0) -> Any:
+def _apart(domain: Pslg, seconds: float = 20.0) -> Any:
     """Triangle's number of triangles, or how it failed."""
     import multiprocessing
 
     context = multiprocessing.get_context("spawn")
     receive, send = context.Pipe(duplex=False)
-    given = for_triangle(domain)
+    given = holed(domain)
     process = context.Process(target=_counted, args=(given, send))
     process.start()
     send.close()

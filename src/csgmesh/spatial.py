@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+from functools import cached_property
+from typing import Any
+
 import numpy as np
 
 #: As many points are compared without a search tree, which has to be imported first.
 FEW = 2000
 SWEEP = np.array([0.8, 0.6])
+#: So many pairs of boxes are compared sooner than a search tree is built.
+FEW_PAIRS = 20_000
 
 
 class Boxes:
@@ -24,20 +29,28 @@ class Boxes:
     """
 
     def __init__(self, lo: np.ndarray, hi: np.ndarray) -> None:
+        self._lo, self._hi = lo, hi
+
+    @cached_property
+    def _tree(self) -> Any:
         from shapely import STRtree
 
-        self._diagonals = _diagonals(lo, hi)
-        self._tree = STRtree(self._diagonals)
+        return STRtree(_diagonals(self._lo, self._hi))
 
     def pairs(self) -> np.ndarray:
         """All pairs i < j of overlapping boxes, (k, 2), sorted."""
-        found = self._tree.query(self._diagonals)
-        found = found[:, found[0] < found[1]]
-        return _sorted_rows(found)
+        found = self.overlapping(self._lo, self._hi)
+        return found[found[:, 0] < found[:, 1]]
 
     def overlapping(self, lo: np.ndarray, hi: np.ndarray) -> np.ndarray:
         """All pairs (query, box) of the given boxes with these, (k, 2), sorted."""
-        return _sorted_rows(self._tree.query(_diagonals(lo, hi)))
+        if len(lo) * len(self._lo) > FEW_PAIRS:
+            return _sorted_rows(self._tree.query(_diagonals(lo, hi)))
+        meet = np.ones((len(lo), len(self._lo)), bool)
+        for axis in (0, 1):
+            meet &= lo[:, axis, None] <= self._hi[:, axis]
+            meet &= hi[:, axis, None] >= self._lo[:, axis]
+        return np.argwhere(meet)
 
 
 def near_pairs(points: np.ndarray, distance: float) -> np.ndarray:

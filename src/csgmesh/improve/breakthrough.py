@@ -43,6 +43,8 @@ def broken_through(work: Workpiece | Stars) -> np.ndarray:
         corners.min(axis=1), corners.max(axis=1)
     )
     pairs = pairs[share_no_end(facets[pairs[:, 1]], quads[pairs[:, 0], :3])]
+    if not len(pairs):
+        return np.zeros(0, np.int64)
     quad, ends = quads[pairs[:, 0]], facets[pairs[:, 1]]
     hit = np.zeros(len(pairs), bool)
     for side in ((0, 1), (1, 2)):

@@ -101,9 +101,11 @@ class Workpiece:
         count = self.arrays.count
         self.measure()
         bad = np.flatnonzero(self.quality > self.arrays.number[GOAL])
+        if not len(bad):
+            return 0
         bad = bad[np.argsort(-self.quality[bad], kind="stable")].astype(np.int32)
         count[[NEXT, DONE, SWEEPS, ROUNDS]] = 0, 0, sweeps, rounds
-        while len(bad) and kernels.treat_triangles(self.arrays, bad):
+        while kernels.treat_triangles(self.arrays, bad):
             if progress is not None:
                 progress("improve", int(count[NEXT]), len(bad))
         return int(count[DONE])
