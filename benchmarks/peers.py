@@ -10,6 +10,8 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
 
 import csgmesh as cm
 from csgmesh.domain import Pslg
@@ -45,15 +47,29 @@ def triangle_inside(domain: Pslg, min_angle: float) -> Arrays:
 
 
 def holed(domain: Pslg) -> dict[str, np.ndarray]:
-    """A domain's chords, and points outside beside them, from which Triangle eats holes."""
+    """A domain's chords, and points outside beside them, from which Triangle eats holes.
+
+    Around the largest component there is nothing to be told.
+    """
     given = for_triangle(domain)
-    start, end = (domain.points[domain.segments[:, k]] for k in (0, 1))
+    n = len(domain.points)
+    links = coo_array((np.ones(domain.n_segments), domain.segments.T), shape=(n, n))
+    _, component = connected_components(links, directed=False)
+    of_segment = component[domain.segments[:, 0]]
+    lo, hi = np.full((n, 2), np.inf), np.full((n, 2), -np.inf)
+    np.minimum.at(lo, component, domain.points)
+    np.maximum.at(hi, component, domain.points)
+    inner = (domain.segment_region < 0).any(axis=1)
+    inner &= of_segment != np.argmax((hi - lo).max(axis=1))
+    start, end = (domain.points[domain.segments[inner, k]] for k in (0, 1))
     across = (end - start) @ np.array([[0.0, -1.0], [1.0, 0.0]])
-    outer = (domain.segment_region < 0).any(axis=1)
-    near = [(0.5 * (start + end) + share * across)[outer] for share in (1e-3, 1e-10)]
-    points = np.concatenate(near)
+    points, left = np.zeros((0, 2)), np.ones(len(start), bool)
     assert domain.oracle is not None
-    points = points[domain.oracle.region(points) < 0]
+    for share in (1e-3, 1e-10):
+        beside = 0.5 * (start + end)[left] + share * across[left]
+        outside = domain.oracle.region(beside) < 0
+        points = np.concatenate([points, beside[outside]])
+        left[left] = ~outside
     return given | {"holes": points} if len(points) else given
 
 

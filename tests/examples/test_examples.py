@@ -112,6 +112,31 @@ def test_structured(run):
     check_picture(folder / "structured.png")
 
 
+def test_improved(run):
+    printed, folder = run("improved")
+    before, after = map(float, re.findall(r"smallest angle (\S+) degrees", printed))
+    assert before >= 30
+    assert after >= 38
+    check_picture(folder / "improved.png")
+
+
+def test_sharp(run):
+    printed, folder = run("sharp")
+    assert printed.count("input angle\n") == 3
+    assert "status='passed'" in printed
+    check_picture(folder / "sharp.png")
+
+
+def test_graded(run):
+    printed, folder = run("graded")
+    lengths = {
+        n: (float(a), float(b)) for n, a, b in re.findall(r"(\w+): .* of (\S+) to (\S+)", printed)
+    }
+    assert lengths["crack"][1] < 0.015
+    assert lengths["dome"][1] > 0.3
+    check_picture(folder / "graded.png")
+
+
 def test_periodic_cell(run):
     printed, folder = run("periodic_cell")
     assert "status='passed'" in printed
