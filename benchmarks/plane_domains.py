@@ -86,8 +86,9 @@ def _polar(radii: np.ndarray) -> np.ndarray:
 
 
 def _wedge(degrees: float) -> Pslg:
+    """A sharp corner between sides of different lengths, in a domain that goes on behind it."""
     t = np.radians(degrees)
-    return loops([(0, 0), (1, 0), (np.cos(t), np.sin(t))])
+    return loops([(0, 0), (1, 0), (1, 1), (0.6 * np.cos(t), 0.6 * np.sin(t))])
 
 
 def _koch(level: int) -> Pslg:
