@@ -8,6 +8,7 @@ from typing import Any
 
 from pydantic import Field, ValidationError
 
+from csgmesh.domain.input_angles import ANGLE_ROUNDING
 from csgmesh.domain.names import find_names
 from csgmesh.domainfile.conditions import Condition
 from csgmesh.domainfile.exact import Measured, boundary_length, covered_area
@@ -211,19 +212,20 @@ def _angles(mesh: Mesh, expect: Expect) -> Iterator[Mismatch]:
         return
     from csgmesh.measures import quality
 
+    # A mesher's angle of 30 degrees may be measured as 29.999999999999996.
     report = quality(mesh)
     least, most = expect.min_angle, expect.max_angle
     if least is not None:
         if least.is_exact:
             least = Condition(least.low, float("inf"))
         smallest = float(report.min_angle.min())
-        if not least.holds(smallest):
+        if not (least.holds(smallest) or least.holds(smallest + ANGLE_ROUNDING)):
             yield Mismatch(("min_angle",), f"min_angle: {smallest:.6g}, expected {least}")
     if most is not None:
         if most.is_exact:
             most = Condition(float("-inf"), most.high)
         largest = float(report.max_angle.max())
-        if not most.holds(largest):
+        if not (most.holds(largest) or most.holds(largest - ANGLE_ROUNDING)):
             yield Mismatch(("max_angle",), f"max_angle: {largest:.6g}, expected {most}")
 
 

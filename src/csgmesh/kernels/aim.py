@@ -10,7 +10,7 @@ from numba import njit
 
 from .background import background_size
 from .pointers import HELPER
-from .queue import bucket
+from .queue import COARSE, FINE, bucket
 
 #: What refinement knows of the wanted mesh. apex_of: up to two apexes on whose segments a vertex
 #: lies; radius: of an apex's protected shell; size: wanted edge length at each vertex if `graded`;
@@ -126,7 +126,9 @@ def badness(xy, origin, twin, aim, t):
         area2 = abx * bcy - aby * bcx
         if ab * bc * ca <= 4.0 * aim.number[N_CIRCLE] * h2 * area2 * area2:
             return -1, False
-    return bucket(shortest * aim.number[N_SCALE]), skinny
+    # Coarse buckets make fewer triangles where only angles count, fine ones follow sizes better.
+    sized = aim.graded != 0 or aim.number[N_SIZE] > 0.0
+    return bucket(shortest * aim.number[N_SCALE], FINE if sized else COARSE), skinny
 
 
 @njit(**HELPER)

@@ -20,15 +20,18 @@ from .pointers import HELPER, bits
 Queue = namedtuple("Queue", "head tail items state")
 
 N_BUCKETS = 1024
-#: Bucket of an edge as long as the domain; two buckets to each factor of two in the square.
+#: Bucket of an edge as long as the domain.
 DIAGONAL_BUCKET = 900
+#: Bits of the mantissa that are left out: two or four buckets to each factor of two in the square.
+COARSE = np.int64(51)
+FINE = np.int64(50)
 LAST = np.int64(N_BUCKETS - 1)
 
 
 @njit(**HELPER)
-def bucket(square):
+def bucket(square, left_out):
     """Bucket of a squared length, given as a share of the squared diagonal."""
-    b = (bits(square) >> 51) - (2046 - DIAGONAL_BUCKET)
+    b = (bits(square) >> left_out) - ((1023 << (52 - left_out)) - DIAGONAL_BUCKET)
     return min(max(b, 0), LAST)
 
 

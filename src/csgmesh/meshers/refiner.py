@@ -20,10 +20,6 @@ SEGMENT_SHARE = 1.3
 #: (Shewchuk's choice in Triangle).
 OFF_CENTRE = 0.475
 
-#: Squared cosines of the smallest angle are taken smaller by this share, so that an angle that
-#: passes is not below the bound when it is measured in another way.
-ROUNDING = 1e-14
-
 # Where sizes come from, as the kernel counts it.
 EVEN, INHERITED, GIVEN = range(3)
 NOTHING = Background(np.empty(1), np.empty(1, np.int32), np.empty(1, np.int32), np.empty(1), 0)
@@ -47,7 +43,7 @@ class Refiner:
         off = OFF_CENTRE * np.sqrt((1.0 + cosine) / (1.0 - cosine)) if min_angle > 0 else 0.0
         self.number = np.array(
             [
-                cosine**2 * (1.0 - ROUNDING),
+                cosine**2,
                 off,
                 CIRCLE_SHARE**2,
                 SEGMENT_SHARE**2,
