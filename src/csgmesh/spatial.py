@@ -61,7 +61,7 @@ def near_pairs(points: np.ndarray, distance: float) -> np.ndarray:
     >>> near_pairs(np.array([[0.0, 0.0], [1.0, 1.0], [0.0, 0.1]]), 0.2)
     array([[0, 2]])
     """
-    if len(points) <= FEW:
+    if len(points) <= FEW and points.shape[1] == 2:
         return _few_near_pairs(points, distance)
     from scipy.spatial import cKDTree
 
