@@ -9,7 +9,6 @@ import numpy as np
 
 #: As many points are compared without a search tree, which has to be imported first.
 FEW = 2000
-SWEEP = np.array([0.8, 0.6])
 #: So many pairs of boxes are compared sooner than a search tree is built.
 FEW_PAIRS = 20_000
 
@@ -71,7 +70,9 @@ def near_pairs(points: np.ndarray, distance: float) -> np.ndarray:
 
 def _few_near_pairs(points: np.ndarray, distance: float) -> np.ndarray:
     """The same by sweeping along a direction in which hardly any points lie side by side."""
-    along = points @ SWEEP
+    direction = 1.0 / np.sqrt(np.arange(points.shape[1]) + 1.37)
+    direction /= np.sqrt((direction**2).sum())
+    along = points @ direction
     order = np.argsort(along, kind="stable")
     along, ranked = along[order], points[order]
     reach = distance + 4 * np.spacing(np.abs(points).max(initial=0.0))
@@ -81,7 +82,7 @@ def _few_near_pairs(points: np.ndarray, distance: float) -> np.ndarray:
         if not len(behind):
             break
         away = ranked[behind + step] - ranked[behind]
-        behind = behind[np.hypot(away[:, 0], away[:, 1]) <= distance]
+        behind = behind[np.sqrt((away**2).sum(axis=1)) <= distance]
         found.append(np.sort([order[behind], order[behind + step]], axis=0))
     return _sorted_rows(np.concatenate(found, axis=1) if found else np.zeros((2, 0)))
 

@@ -42,9 +42,10 @@ def test_a_spanning_tree_reaches_all_and_subtrees_are_intervals(graph, monkeypat
             assert first < position[v] < first + size[parent[v]]
 
 
+@pytest.mark.parametrize("dim", [2, 3, 4])
 @pytest.mark.parametrize("distance", [0.0, 0.01, 0.3])
-def test_near_pairs_do_not_depend_on_the_route(distance: float, monkeypatch) -> None:
-    points = np.random.default_rng(5).random((300, 2)).round(2) + 1e6
+def test_near_pairs_do_not_depend_on_the_route(dim: int, distance: float, monkeypatch) -> None:
+    points = np.random.default_rng(5).random((300, dim)).round(4 // dim) + 1e6
     few = spatial.near_pairs(points, distance)
     monkeypatch.setattr(spatial, "FEW", -1)
     assert np.array_equal(few, spatial.near_pairs(points, distance))
