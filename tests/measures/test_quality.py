@@ -60,9 +60,6 @@ def test_degenerate_cells_are_measured_without_warnings():
 
 def test_no_cells_and_wrong_meshes():
     assert str(quality(Mesh(np.zeros((0, 2)), {}))) == "0 points, 0 cells (none)"
-    solid = Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], {"tetra": [[0, 1, 2, 3]]})
-    with pytest.raises(InputError, match="dim 3"):
-        quality(solid)
 
 
 def test_only_meshes_have_a_quality():

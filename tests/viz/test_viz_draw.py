@@ -211,7 +211,9 @@ import csgmesh
 print(*sorted(found), "matplotlib" in sys.modules)
 """
     run = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
-    assert run.stdout.split() == ["Embed", "Mesh", "Plc", "Pslg", "Regions", "Shape", "False"]
+    assert run.stdout.split() == [
+        *("Embed", "Mesh", "Periodic", "Plc", "Pslg", "Regions", "Shape", "False")
+    ]
 
 
 def test_edges_are_drawn_though_most_cells_crowd_in_a_corner():
