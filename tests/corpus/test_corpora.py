@@ -61,9 +61,9 @@ def test_degenerate_domains_mesh_wherever_they_lie(label: str) -> None:
     mesher = cm.DelaunayRefinement(min_angle=20, max_points=50_000)
     for placed in (shape, shape.rotate(17)):
         if label in ENDLESS:
-            with pytest.raises(BudgetError, match="max_points=50000") as stopped:
+            # Known from its flatness before any work is done, or found out by doing it.
+            with pytest.raises(BudgetError, match=r"max_points(=| is )50000"):
                 cm.generate(placed, mesher)
-            assert stopped.value.mesh.n_cells > 10_000
             continue
         mesh = cm.generate(placed, mesher)
         certificate = check(mesh, cm.evaluate(placed))

@@ -198,3 +198,20 @@ def test_random_trees_pass_the_certificate(shape, size, cells):
         return
     certificate = cm.check(mesh, domain)
     assert certificate.ok, (shape, certificate.failures)
+
+
+@pytest.mark.parametrize("cells", ["triangle", "mixed", "quad"])
+@pytest.mark.parametrize("wall", ["wall.bottom", "body"])
+def test_boundary_layers_under_a_quadtree(cells: str, wall: str) -> None:
+    shape = cm.Box((0, 0), (4, 1), name="wall") - cm.Disk((1, 0.5), 0.2, name="body")
+    layers = {wall: cm.Layers(first=0.01, growth=1.3, n=4)}
+    mesh = cm.generate(shape, cm.Quadtree(cells=cells, layers=layers), size=0.15)
+    certificate = cm.check(mesh, shape)
+    assert certificate.ok, certificate
+    # The first layer is as thin as asked for: its vertices lie 0.01 off the wall.
+    x, y = mesh.points.T
+    off = y if wall == "wall.bottom" else np.hypot(x - 1, y - 0.5) - 0.2
+    off = off[(np.abs(x - 1) < 0.5) & (off > 1e-9)]
+    assert off.min() == pytest.approx(0.01, rel=1e-6)
+    if cells == "quad":
+        assert list(mesh.cells) == ["quad"]

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -13,6 +14,7 @@ from csgmesh.improve import optimise, smooth
 from csgmesh.improve.squaring import square_up
 from csgmesh.measures import quality
 from csgmesh.mesh import Mesh
+from csgmesh.meshers.layers import Layers, checked_layers, with_layers
 from csgmesh.meshers.quadtree_cells import mixed_mesh, quad_mesh, triangle_mesh
 from csgmesh.meshers.quadtree_run import Run
 from csgmesh.meshers.workspace import Progress
@@ -61,6 +63,8 @@ class Quadtree:
     improve : bool, default False
         Whether to raise the smallest angles of the whole mesh afterwards, of triangles to 39
         degrees where the boundary lets them; vertices then slide along their curves.
+    layers : mapping of str to Layers, optional
+        Boundary layers along named outer boundaries; see `Layers`.
 
     Raises
     ------
@@ -82,7 +86,8 @@ class Quadtree:
     the root, so that with a size that varies edges are between half and 1.6 times as long as asked
     for. A point in the middle of a smooth curve, put there when it was flattened, is not kept. At
     an input angle below 30 degrees a quad is as sharp as the angle: ``info["excused"]`` counts
-    those. Periodic sides are refused.
+    those. Periodic sides are refused. With `layers` there is no bound on angles: layers are as thin
+    as asked for.
 
     Termination
     -----------
@@ -114,6 +119,7 @@ class Quadtree:
     gradation: float = 0.5
     max_points: int = 10**7
     improve: bool = False
+    layers: Mapping[str, Layers] = field(default_factory=dict, hash=False)
 
     def __post_init__(self) -> None:
         check_choice("cells", self.cells, CELLS, "Quadtree")
@@ -123,6 +129,7 @@ class Quadtree:
             raise InputError(f"max_points must be at least 4; got {self.max_points!r}")
         if not isinstance(self.improve, bool):
             raise InputError(f"improve must be True or False; got {self.improve!r}")
+        checked_layers(self.layers)
 
     def generate(self, domain: Pslg, size: Any = None, progress: Progress | None = None) -> Mesh:
         """Mesh a domain.
@@ -153,11 +160,19 @@ class Quadtree:
         if domain.periodic:
             raise InputError("Quadtree does not mesh periodic sides alike; DelaunayRefinement does")
         wanted = resolve(size, domain)
+        if self.layers:
+            about: dict[str, object] = {"method": "Quadtree", "options": self._options()}
+            inside = replace(self, layers={})
+
+            def mesh_inside(inner: Pslg) -> Mesh:
+                return inside.generate(inner, size, progress)
+
+            return with_layers(domain, self.layers, wanted, mesh_inside, about)
         width = max(int(np.ceil(GROWTH / self.gradation - 1e-9)), 1)
         scale = {"triangle": UNIFORM, "mixed": 1.0, "quad": 2.0}[self.cells]
         parts = 2 if self.cells == "quad" else 1
         run = Run(domain, wanted, scale, width, self.max_points, WANTED, progress, parts)
-        info: dict[str, object] = {"method": "Quadtree", "options": asdict(self)}
+        info: dict[str, object] = {"method": "Quadtree", "options": self._options()}
         if self.cells == "quad":
             return self._quads(run, info, progress)
         stuck = run.run(PROMISED)
@@ -174,6 +189,10 @@ class Quadtree:
         if self.cells == "mixed":
             return smooth(mesh, "optimize", progress=progress)
         return optimise(mesh, wanted.uniform if wanted is not None else None, progress=progress)
+
+    def _options(self) -> dict[str, object]:
+        silent = () if self.layers else ("layers",)
+        return {name: value for name, value in vars(self).items() if name not in silent}
 
     def _quads(self, run: Run, info: dict[str, object], progress: Progress | None) -> Mesh:
         """Quads; the tree is refined where they fold."""

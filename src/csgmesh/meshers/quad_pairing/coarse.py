@@ -28,7 +28,10 @@ def coarse_triangles(
 ) -> Mesh:
     """Triangles of twice the wanted size."""
     run = Meshing(domain, sharp_corners(domain), limits, progress, with_squares)
-    finished = run.run(_doubled(size))
+    # Without a size the features' own, growing by the gradation: triangles graded by nothing but
+    # their angles pair badly.
+    wanted = ResolvedSize(UniformSize(domain.diagonal)) if size is None else _doubled(size)
+    finished = run.run(wanted)
     run.refiner.publish()
     mesh = assemble(run.work, {})
     if not finished:
@@ -40,10 +43,8 @@ def coarse_triangles(
     return mesh
 
 
-def _doubled(size: ResolvedSize | None) -> ResolvedSize | None:
+def _doubled(size: ResolvedSize) -> ResolvedSize:
     """Twice the size everywhere."""
-    if size is None:
-        return None
 
     def twice(source: Source) -> Source:
         if isinstance(source, UniformSize):

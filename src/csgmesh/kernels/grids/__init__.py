@@ -1,0 +1,1 @@
+"""Kernels of structured grids and of quads made of triangles."""
