@@ -9,7 +9,7 @@ import numpy as np
 
 from csgmesh.domain.pslg import Pslg
 from csgmesh.errors import InputError
-from csgmesh.measures.histogram import histogram
+from csgmesh.measures.summary import histogram
 from csgmesh.mesh import Mesh
 from csgmesh.size import limit_gradation, pointwise
 from csgmesh.size.background import cell_edges

@@ -8,10 +8,10 @@ from typing import Any
 import numpy as np
 
 from csgmesh.errors import InputError
-from csgmesh.measures.histogram import histogram
 from csgmesh.measures.jacobians import curved_areas, jacobian_bounds
 from csgmesh.measures.shapes import CellMeasures, measure_cells
 from csgmesh.measures.space.quality import space_quality
+from csgmesh.measures.summary import extremes, headline, histogram, table
 from csgmesh.mesh import KINDS, Mesh
 from csgmesh.mesh.nodes import node_family
 
@@ -59,13 +59,11 @@ class Quality:
     @property
     def extremes(self) -> dict[str, tuple[float, float]]:
         """Smallest and largest value of each measure; those that no cell has are left out."""
-        found = {}
-        for name in _LABELS:
-            values = getattr(self, name)
-            values = values[~np.isnan(values)]
-            if len(values):
-                found[name] = float(values.min()), float(values.max())
-        return found
+        return extremes(self._measures)
+
+    @property
+    def _measures(self) -> dict[str, np.ndarray]:
+        return {name: getattr(self, name) for name in _LABELS}
 
     @property
     def total_area(self) -> float:
@@ -80,23 +78,15 @@ class Quality:
         return f"<Quality: {kinds}; angles {low:.2f}° to {high:.2f}°>"
 
     def __str__(self) -> str:
-        kinds = ", ".join(f"{n:,} {kind}" for kind, n in self.n_by_kind.items())
-        lines = [f"{self.n_points:,} points, {self.n_cells:,} cells ({kinds or 'none'})"]
+        lines = [headline(self.n_points, self.n_by_kind)]
         if not self.n_cells:
             return lines[0]
-        lines += [f"area {self.total_area:.10g}", "", *self._table(), ""]
+        lines += [f"area {self.total_area:.10g}", "", *table(_LABELS, self._measures), ""]
         if "triangle" in self.n_by_kind or len(self.n_by_kind) > 1:
             lines += ["smallest angle of the cells", *histogram(self.min_angle, 0.0, 90.0, 9)]
         else:
             lines += ["scaled Jacobian", *histogram(self.scaled_jacobian, 0.0, 1.0, 10)]
         return "\n".join(lines)
-
-    def _table(self) -> list[str]:
-        rows = [f"{'':<18}{'smallest':>12}{'mean':>12}{'largest':>12}"]
-        for name, (low, high) in self.extremes.items():
-            mean = float(np.nanmean(getattr(self, name)))
-            rows.append(f"{_LABELS[name]:<18}{low:>12.5g}{mean:>12.5g}{high:>12.5g}")
-        return rows
 
 
 _LABELS = {

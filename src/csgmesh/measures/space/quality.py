@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from csgmesh.errors import InputError
-from csgmesh.measures.histogram import histogram
 from csgmesh.measures.space.jacobians import least_jacobians
+from csgmesh.measures.summary import extremes, headline, histogram, table
 from csgmesh.mesh import KINDS, Mesh
 
 
@@ -51,13 +51,11 @@ class SpaceQuality:
     @property
     def extremes(self) -> dict[str, tuple[float, float]]:
         """Smallest and largest value of each measure; those that no cell has are left out."""
-        found = {}
-        for name in _LABELS:
-            values = getattr(self, name)
-            values = values[~np.isnan(values)]
-            if len(values):
-                found[name] = float(values.min()), float(values.max())
-        return found
+        return extremes(self._measures)
+
+    @property
+    def _measures(self) -> dict[str, np.ndarray]:
+        return {name: getattr(self, name) for name in _LABELS}
 
     @property
     def total_volume(self) -> float:
@@ -72,15 +70,10 @@ class SpaceQuality:
         return f"<SpaceQuality: {kinds}; dihedral angles {low:.2f}° to {high:.2f}°>"
 
     def __str__(self) -> str:
-        kinds = ", ".join(f"{n:,} {kind}" for kind, n in self.n_by_kind.items())
-        lines = [f"{self.n_points:,} points, {self.n_cells:,} cells ({kinds or 'none'})"]
+        lines = [headline(self.n_points, self.n_by_kind)]
         if not self.n_cells:
             return lines[0]
-        lines += [f"volume {self.total_volume:.10g}", ""]
-        lines.append(f"{'':<20}{'smallest':>12}{'mean':>12}{'largest':>12}")
-        for name, (low, high) in self.extremes.items():
-            mean = float(np.nanmean(getattr(self, name)))
-            lines.append(f"{_LABELS[name]:<20}{low:>12.5g}{mean:>12.5g}{high:>12.5g}")
+        lines += [f"volume {self.total_volume:.10g}", "", *table(_LABELS, self._measures)]
         lines += ["", "smallest dihedral angle of the cells"]
         return "\n".join([*lines, *histogram(self.min_dihedral, 0.0, 90.0, 9)])
 
