@@ -46,9 +46,11 @@ class Partwise:
         left = self.max_points
         for i, part in enumerate(self.parts):
             error = crew.errors.get(i)
-            run = crew.results.get(i)
             if error is not None and not isinstance(error, BudgetError):
                 raise error
+            run = crew.results.get(i)
+            if run is None and error is None:
+                run = self._finished(part, self.max_points, self.progress)
             if run is None or run.work.n_points > left:
                 run = self._meshing(part, left, self.progress)
                 if not _finishes(run, self.size):
@@ -59,18 +61,28 @@ class Partwise:
             left -= run.work.n_points
         return True
 
-    def _job(self, part: Part) -> Callable[[Progress], Meshing]:
-        def job(tell: Progress) -> Meshing:
-            with self._lock:
-                left = self.max_points - self._spent
-            run = self._meshing(part, left, tell)
-            if not _finishes(run, self.size):
+    def _job(self, part: Part) -> Callable[[Progress], Meshing | None]:
+        """A job that meshes a part with the whole budget, for what others take is not settled yet.
+
+        It does nothing once more than the budget is spent: then the parts are taken in their order.
+        """
+
+        def job(tell: Progress) -> Meshing | None:
+            if self._spent > self.max_points:
+                return None
+            run = self._finished(part, self.max_points, tell)
+            if run is None:
                 raise BudgetError("the budget is for all parts together")
             with self._lock:
                 self._spent += run.work.n_points
             return run
 
         return job
+
+    def _finished(self, part: Part, max_points: int, progress: Progress | None) -> Meshing | None:
+        """The run that meshes a part, None if the points do not suffice."""
+        run = self._meshing(part, max_points, progress)
+        return run if _finishes(run, self.size) else None
 
     def _meshing(self, part: Part, max_points: int, progress: Progress | None) -> Meshing:
         limits = self.min_angle, self.gradation, max_points
