@@ -52,6 +52,15 @@ def test_plate(run):
     assert set(meshio.read(folder / "plate.msh").field_data) >= PLATE
 
 
+def test_quadtree(run):
+    printed, folder = run("quadtree")
+    angles = [float(a) for a in re.findall(r"smallest angle (\S+)°", printed)]
+    assert len(angles) == 3
+    assert min(angles[:2]) >= 18.4
+    assert "triangle" not in printed.splitlines()[2]
+    check_picture(folder / "quadtree.png")
+
+
 def test_pulley(run):
     printed, folder = run("pulley")
     assert "the mesh is valid" in printed
