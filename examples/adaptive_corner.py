@@ -25,8 +25,8 @@ def error(mesh, u):
     return np.sqrt(Functional(lambda w: (w["u"] - exact(*w.x)) ** 2).assemble(basis, u=u))
 
 
-runs = [cm.adapt(shape, poisson, size=0.2, cells=n, norm="H1") for n in (500, 2000, 8000)]
-even = [cm.generate(shape, size=h) for h in (0.14, 0.07, 0.035)]
+runs = [cm.adapt(shape, poisson, size=0.2, cells=n, norm="H1") for n in (2000, 8000, 32000)]
+even = [cm.generate(shape, size=h) for h in (0.07, 0.035, 0.0175)]
 print(str(runs[-1]))
 figure, (left, right) = plt.subplots(1, 2, figsize=(10, 4.6), layout="constrained")
 cm.draw(runs[1].mesh, ax=left, legend=False)

@@ -105,6 +105,17 @@ def check_real(option: str, value: object, rule: str, holds: Callable[[float], b
     return number
 
 
+def check_growth(option: str, value: object) -> float:
+    """A positive finite number, such as the growth of sizes per unit of length.
+
+    Examples
+    --------
+    >>> check_growth("gradation", 0.3)
+    0.3
+    """
+    return check_real(option, value, "positive and finite", lambda x: 0 < x < np.inf)
+
+
 def check_whole(option: str, value: object, least: int) -> int:
     """A whole number as an int; 1e6 is one.
 

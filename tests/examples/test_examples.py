@@ -183,8 +183,7 @@ def test_adaptive_corner(run):
     adapted, uniform = (
         float(re.search(rf"{name}: order (\S+)", printed)[1]) for name in ("adapted", "uniform")
     )
-    # Order one, which small meshes reach from below.
-    assert -1.3 < adapted < -0.9
+    assert adapted == pytest.approx(-1, abs=0.1)
     assert uniform > -0.75
     assert "H1 error" in printed
     check_picture(folder / "adaptive_corner.png")

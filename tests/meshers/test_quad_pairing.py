@@ -128,6 +128,10 @@ def test_the_same_bytes() -> None:
 
 
 def test_errors() -> None:
+    with pytest.raises(InputError, match=r"sweeps must be a whole number, at least 0; got 1\.5"):
+        cm.QuadPairing(sweeps=1.5)
+    with pytest.raises(InputError, match="min_angle must be between 0 and 34 degrees; got '30'"):
+        cm.QuadPairing(min_angle="30")
     with pytest.raises(InputError, match="min_angle must be between"):
         cm.QuadPairing(min_angle=40)
     with pytest.raises(InputError, match="sweeps"):

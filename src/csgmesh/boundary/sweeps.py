@@ -6,6 +6,7 @@ import numpy as np
 
 from csgmesh.boundary.planar import evaluate_plane
 from csgmesh.csg.primitives.box import Box
+from csgmesh.csg.primitives.cone import direction_of
 from csgmesh.csg.primitives.cylinder import Cylinder
 from csgmesh.csg.primitives.disk import Disk
 from csgmesh.csg.primitives.extrude import Extrude
@@ -45,7 +46,7 @@ def swept_domain(program: Program, deviation: float | None) -> SweptDomain | Non
         )  # fmt: skip
     if isinstance(primitive, Cylinder):
         body = primitive.body()
-        height = float(np.sqrt(((np.array(primitive.top) - primitive.base) ** 2).sum()))
+        _, height = direction_of(primitive.base, primitive.top)
         return SweptDomain(
             evaluate_plane(Disk((0, 0), primitive.radius), deviation, None), False, height,
             matrix @ body.matrix, matrix @ body.offset + offset,

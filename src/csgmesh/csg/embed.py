@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
-from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -12,12 +11,11 @@ import numpy as np
 from csgmesh.csg import checks
 from csgmesh.csg.nodes import Shape
 from csgmesh.csg.regions import Regions
+from csgmesh.csg.whole import Whole
 from csgmesh.errors import ShapeError
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
-
-    from csgmesh.csg.program import Program
 
 
 @dataclass(frozen=True, eq=False, repr=False, init=False)
@@ -113,7 +111,7 @@ def _points(points: np.ndarray, name: str | None) -> EmbeddedPoints:
 
 
 @dataclass(frozen=True, repr=False, init=False)
-class Embed:
+class Embed(Whole):
     """A domain with paths and points that its mesh must contain.
 
     Parameters
@@ -154,20 +152,6 @@ class Embed:
     def dim(self) -> int:
         """2 in the plane, 3 in space."""
         return self.shape.dim
-
-    @cached_property
-    def _program(self) -> Program:
-        from csgmesh.csg.program import compile_shape
-
-        return compile_shape(self)
-
-    def contains(self, points: ArrayLike) -> np.ndarray:
-        """Which of the points, ``(n, dim)``, lie in the domain: ``(n,)`` bool."""
-        return self._program.contains(checks.query_points(points, self.dim))
-
-    def bounds(self) -> tuple[np.ndarray, np.ndarray]:
-        """Lowest and highest corner of a box around the domain."""
-        return self._program.bounds()
 
     def __repr__(self) -> str:
         return f"Embed({self.shape!r}, [{', '.join(map(repr, self.items))}])"

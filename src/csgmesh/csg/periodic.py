@@ -4,25 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
-from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-import numpy as np
-
-from csgmesh.csg import checks
 from csgmesh.csg.embed import Embed
 from csgmesh.csg.nodes import Shape
 from csgmesh.csg.regions import Regions
+from csgmesh.csg.whole import Whole
 from csgmesh.errors import ShapeError
-
-if TYPE_CHECKING:
-    from numpy.typing import ArrayLike
-
-    from csgmesh.csg.program import Program
 
 
 @dataclass(frozen=True, repr=False, init=False)
-class Periodic:
+class Periodic(Whole):
     """A domain with pairs of sides whose vertices must match.
 
     The two sides of a pair must be congruent: a translation or a rotation takes the first to the
@@ -75,20 +67,6 @@ class Periodic:
     def dim(self) -> int:
         """2."""
         return self.shape.dim
-
-    @cached_property
-    def _program(self) -> Program:
-        from csgmesh.csg.program import compile_shape
-
-        return compile_shape(self)
-
-    def contains(self, points: ArrayLike) -> np.ndarray:
-        """Which of the points, ``(n, dim)``, lie in the domain: ``(n,)`` bool."""
-        return self._program.contains(checks.query_points(points, self.dim))
-
-    def bounds(self) -> tuple[np.ndarray, np.ndarray]:
-        """Lowest and highest corner of a box around the domain."""
-        return self._program.bounds()
 
     def __repr__(self) -> str:
         return f"Periodic({self.shape!r}, {list(self.pairs)!r})"

@@ -4,23 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import cached_property
-from typing import TYPE_CHECKING, Any
-
-import numpy as np
+from typing import Any
 
 from csgmesh.csg import checks
 from csgmesh.csg.nodes import LARGEST_TREE, Shape
+from csgmesh.csg.whole import Whole
 from csgmesh.errors import ShapeError
-
-if TYPE_CHECKING:
-    from numpy.typing import ArrayLike
-
-    from csgmesh.csg.program import Program
 
 
 @dataclass(frozen=True, repr=False, init=False)
-class Regions:
+class Regions(Whole):
     """Several materials: a mapping from region names to shapes.
 
     Later entries cover earlier ones; the meshes of neighbours conform at their interface.
@@ -75,20 +68,6 @@ class Regions:
     def dim(self) -> int:
         """2 in the plane, 3 in space."""
         return self.entries[0][1].dim
-
-    @cached_property
-    def _program(self) -> Program:
-        from csgmesh.csg.program import compile_shape
-
-        return compile_shape(self)
-
-    def contains(self, points: ArrayLike) -> np.ndarray:
-        """Which of the points, ``(n, dim)``, lie in any region: ``(n,)`` bool."""
-        return self._program.contains(checks.query_points(points, self.dim))
-
-    def bounds(self) -> tuple[np.ndarray, np.ndarray]:
-        """Lowest and highest corner of a box around all regions."""
-        return self._program.bounds()
 
     def __repr__(self) -> str:
         return f"Regions({{{', '.join(f'{name!r}: {shape!r}' for name, shape in self.entries)}}})"

@@ -23,7 +23,7 @@ from csgmesh.meshers.side_by_side import cores
 from csgmesh.meshers.units import mesh_in_own_unit, own_unit
 from csgmesh.meshers.workspace import MOST_POINTS, Progress
 from csgmesh.meshers.worst import describe, worst_cells
-from csgmesh.options import check_flag, check_real, check_whole
+from csgmesh.options import check_flag, check_growth, check_real, check_whole
 from csgmesh.size import ResolvedSize, resolve
 
 #: Beyond this no ordering of Delaunay refinement is known to end on most inputs.
@@ -131,9 +131,7 @@ class DelaunayRefinement:
             "min_angle": check_real(
                 "min_angle", self.min_angle, angle_rule, lambda x: 0 <= x <= LARGEST_MIN_ANGLE
             ),
-            "gradation": check_real(
-                "gradation", self.gradation, "positive and finite", lambda x: 0 < x < np.inf
-            ),
+            "gradation": check_growth("gradation", self.gradation),
             "max_points": check_whole("max_points", self.max_points, 3),
             "improve": check_flag("improve", self.improve),
             "threads": None if self.threads is None else check_whole("threads", self.threads, 1),

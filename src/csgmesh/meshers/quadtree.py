@@ -18,7 +18,7 @@ from csgmesh.meshers.layers import Layers, checked_layers, with_layers
 from csgmesh.meshers.quadtree_cells import mixed_mesh, quad_mesh, triangle_mesh
 from csgmesh.meshers.quadtree_run import Run
 from csgmesh.meshers.workspace import Progress
-from csgmesh.options import check_choice
+from csgmesh.options import check_choice, check_flag, check_growth, check_whole
 from csgmesh.size import resolve
 
 CELLS = ("triangle", "quad", "mixed")
@@ -123,12 +123,13 @@ class Quadtree:
 
     def __post_init__(self) -> None:
         check_choice("cells", self.cells, CELLS, "Quadtree")
-        if not (self.gradation > 0 and np.isfinite(self.gradation)):
-            raise InputError(f"gradation must be positive and finite; got {self.gradation!r}")
-        if self.max_points < 4:
-            raise InputError(f"max_points must be at least 4; got {self.max_points!r}")
-        if not isinstance(self.improve, bool):
-            raise InputError(f"improve must be True or False; got {self.improve!r}")
+        checked = {
+            "gradation": check_growth("gradation", self.gradation),
+            "max_points": check_whole("max_points", self.max_points, 4),
+            "improve": check_flag("improve", self.improve),
+        }
+        for name, value in checked.items():
+            object.__setattr__(self, name, value)
         checked_layers(self.layers)
 
     def generate(self, domain: Pslg, size: Any = None, progress: Progress | None = None) -> Mesh:

@@ -36,6 +36,13 @@ def axis_of(
     return start, end
 
 
+def direction_of(base: tuple[float, ...], top: tuple[float, ...]) -> tuple[np.ndarray, float]:
+    """Unit vector along an axis, and its length."""
+    along = np.array(top) - base
+    height = float(np.sqrt((along**2).sum()))
+    return along / height, height
+
+
 @dataclass(frozen=True, eq=False, repr=False, init=False)
 class Cone(Solid):
     """A cone or, with two radii, a frustum, around the axis from `base` to `top`.
@@ -96,13 +103,8 @@ class Cone(Solid):
     def parts(self) -> tuple[str, ...]:
         return ("side", "base", "top")
 
-    def _axis(self) -> tuple[np.ndarray, float]:
-        along = np.array(self.top) - self.base
-        height = float(np.sqrt((along**2).sum()))
-        return along / height, height
-
     def inside(self, points: np.ndarray) -> np.ndarray:
-        axis, height = self._axis()
+        axis, height = direction_of(self.base, self.top)
         local = points - self.base
         along = local @ axis
         radius = self.base_radius + (self.top_radius - self.base_radius) * (along / height)
@@ -111,13 +113,13 @@ class Cone(Solid):
         return within & ((local**2).sum(axis=1) <= radius * radius)
 
     def support(self, directions: np.ndarray) -> np.ndarray:
-        flat = across(directions, self._axis()[0])
+        flat = across(directions, direction_of(self.base, self.top)[0])
         return np.maximum(
             directions @ self.base + self.base_radius * flat,
             directions @ self.top + self.top_radius * flat,
         )
 
     def body(self) -> Revolution:
-        axis, height = self._axis()
+        axis, height = direction_of(self.base, self.top)
         profile = tapered(height, self.base_radius, self.top_radius)
         return Revolution(profile, 360.0, frame_along(axis), np.array(self.base))

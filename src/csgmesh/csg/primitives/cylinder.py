@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 
 from csgmesh.csg import checks
-from csgmesh.csg.primitives.cone import axis_of, tapered
+from csgmesh.csg.primitives.cone import axis_of, direction_of, tapered
 from csgmesh.csg.solid import Revolution, Solid, across, frame_along
 
 if TYPE_CHECKING:
@@ -60,13 +60,8 @@ class Cylinder(Solid):
     def parts(self) -> tuple[str, ...]:
         return ("side", "base", "top")
 
-    def _axis(self) -> tuple[np.ndarray, float]:
-        along = np.array(self.top) - self.base
-        height = float(np.sqrt((along**2).sum()))
-        return along / height, height
-
     def inside(self, points: np.ndarray) -> np.ndarray:
-        axis, height = self._axis()
+        axis, height = direction_of(self.base, self.top)
         local = points - self.base
         along = local @ axis
         local -= along[:, None] * axis
@@ -75,9 +70,9 @@ class Cylinder(Solid):
 
     def support(self, directions: np.ndarray) -> np.ndarray:
         ends = np.maximum(directions @ self.base, directions @ self.top)
-        return ends + self.radius * across(directions, self._axis()[0])
+        return ends + self.radius * across(directions, direction_of(self.base, self.top)[0])
 
     def body(self) -> Revolution:
-        axis, height = self._axis()
+        axis, height = direction_of(self.base, self.top)
         profile = tapered(height, self.radius, self.radius)
         return Revolution(profile, 360.0, frame_along(axis), np.array(self.base))

@@ -18,6 +18,7 @@ from csgmesh.meshers.quad_pairing.coarse import coarse_triangles, halved_near, j
 from csgmesh.meshers.quad_pairing.matching import pair
 from csgmesh.meshers.quad_pairing.splitting import split
 from csgmesh.meshers.workspace import Progress
+from csgmesh.options import check_growth, check_real, check_whole
 from csgmesh.size import resolve
 
 #: Quads at an input angle below this many degrees may be as sharp.
@@ -93,17 +94,17 @@ class QuadPairing:
     sweeps: int = 10
 
     def __post_init__(self) -> None:
-        if not 0 <= self.min_angle <= LARGEST_MIN_ANGLE:
-            raise InputError(
-                f"min_angle must be between 0 and {LARGEST_MIN_ANGLE:g} degrees; "
-                f"got {self.min_angle!r}"
-            )
-        if not (self.gradation > 0 and np.isfinite(self.gradation)):
-            raise InputError(f"gradation must be positive and finite; got {self.gradation!r}")
-        if self.max_points < 16:
-            raise InputError(f"max_points must be at least 16; got {self.max_points!r}")
-        if self.sweeps < 0:
-            raise InputError(f"sweeps must not be negative; got {self.sweeps!r}")
+        angle_rule = f"between 0 and {LARGEST_MIN_ANGLE:g} degrees"
+        checked = {
+            "gradation": check_growth("gradation", self.gradation),
+            "min_angle": check_real(
+                "min_angle", self.min_angle, angle_rule, lambda x: 0 <= x <= LARGEST_MIN_ANGLE
+            ),
+            "max_points": check_whole("max_points", self.max_points, 16),
+            "sweeps": check_whole("sweeps", self.sweeps, 0),
+        }
+        for name, value in checked.items():
+            object.__setattr__(self, name, value)
 
     def generate(self, domain: Pslg, size: Any = None, progress: Progress | None = None) -> Mesh:
         """Mesh a domain.
