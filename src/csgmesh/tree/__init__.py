@@ -1,4 +1,4 @@
-"""Linear trees: the plane cut into leaves, each a quarter of the one it came from."""
+"""Linear trees: the plane or space cut into leaves, each a part of the one it came from."""
 
 from csgmesh.tree.linear import LinearTree
 
