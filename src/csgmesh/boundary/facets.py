@@ -197,13 +197,16 @@ def _prism(body: Prism, outline: _Outline) -> Facets:
         np.array([(0.0, 0.0, -1.0), (0.0, 0.0, 1.0)]),
     )
     walls = Surfaces.placed(EXTRUDED, outline.curves, np.eye(3), np.zeros(3))
+    parts = ((0,), (1,), *outline.parts)
+    if body.is_one_part:
+        parts = ((0,),) * len(parts)
     return Facets(
         points,
         np.concatenate([cap[:, ::-1], cap + n, sides]),
         np.concatenate([np.zeros(len(cap), int), np.ones(len(cap), int), np.tile(source, 2)]),
         Surfaces.concatenate([planes, walls]),
-        ((0,), (1,), *outline.parts),
-    )
+        parts,
+    ).transformed(body.matrix, body.offset)
 
 
 def _turned(body: Revolution, outline: _Outline, deviation: float) -> Facets:

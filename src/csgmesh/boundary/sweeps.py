@@ -11,9 +11,11 @@ from csgmesh.csg.primitives.cylinder import Cylinder
 from csgmesh.csg.primitives.disk import Disk
 from csgmesh.csg.primitives.extrude import Extrude
 from csgmesh.csg.primitives.half_space import HalfSpace
+from csgmesh.csg.primitives.hull import Hull
 from csgmesh.csg.primitives.revolve import Revolve
 from csgmesh.csg.program import Leaf, Program
 from csgmesh.csg.shape import Shape
+from csgmesh.csg.solid import Prism
 from csgmesh.domain.sweep import SweptDomain
 
 #: What the profile of a revolution calls its axis.
@@ -21,7 +23,10 @@ _AXIS = "axis"
 
 
 def swept_domain(program: Program, deviation: float | None) -> SweptDomain | None:
-    """The sweep that a program is, if it is a single extrusion, revolution, box or cylinder."""
+    """The sweep that a program is.
+
+    That is a single extrusion, revolution, box or cylinder, or a hull of prisms; else None.
+    """
     code = program.regions[0][1]
     if len(program.regions) > 1 or len(code) > 1:
         return None
@@ -43,6 +48,17 @@ def swept_domain(program: Program, deviation: float | None) -> SweptDomain | Non
         return SweptDomain(
             evaluate_plane(flat, deviation, None), False, height,
             matrix, matrix @ low + offset, side, leaf.names[2], leaf.names[3],
+        )  # fmt: skip
+    if isinstance(primitive, Hull):
+        hull = primitive.body()
+        if not isinstance(hull, Prism):
+            return None
+        profile = evaluate_plane(hull.profile, deviation, None)
+        (name,) = leaf.names
+        return SweptDomain(
+            profile, False, hull.height,
+            matrix @ hull.matrix, matrix @ hull.offset + offset,
+            dict.fromkeys(profile.names, name), name, name,
         )  # fmt: skip
     if isinstance(primitive, Cylinder):
         body = primitive.body()

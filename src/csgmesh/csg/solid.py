@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import abstractmethod
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -39,6 +39,7 @@ class Revolution:
     angle : float
         Degrees, at most 360.
     matrix, offset : (3, 3), (3,) float64
+        Where it is placed.
     """
 
     profile: Profile | Shape
@@ -49,10 +50,23 @@ class Revolution:
 
 @dataclass(frozen=True, eq=False)
 class Prism:
-    """A planar shape extruded along z, from 0 to a height."""
+    """A planar shape extruded along z, from 0 to a height, then placed.
+
+    Attributes
+    ----------
+    profile : Shape
+    height : float
+    matrix, offset : (3, 3), (3,) float64
+        Where it is placed.
+    is_one_part : bool
+        Whether ends and sides are one part of the solid.
+    """
 
     profile: Shape
     height: float
+    matrix: np.ndarray = field(default_factory=lambda: np.eye(3))
+    offset: np.ndarray = field(default_factory=lambda: np.zeros(3))
+    is_one_part: bool = False
 
 
 @dataclass(frozen=True, eq=False)

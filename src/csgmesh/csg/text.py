@@ -144,6 +144,9 @@ def _leaf(kind: str, arguments: dict[str, Any]) -> Shape:
         raise ShapeError(f"from_dict: {kind} needs a dictionary of arguments; got {arguments!r}")
     if isinstance(arguments.get("shape"), dict):
         arguments = arguments | {"shape": from_dict(arguments["shape"])}
+    if isinstance(arguments.get("shapes"), list):
+        members = [from_dict(s) if isinstance(s, dict) else s for s in arguments["shapes"]]
+        arguments = arguments | {"shapes": members}
     try:
         return Primitive.kinds[kind](**arguments)
     except TypeError as problem:

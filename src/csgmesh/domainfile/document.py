@@ -91,6 +91,9 @@ class Document:
             elif isinstance(node.value, list) and isinstance(step, int) and step < len(node.value):
                 node = node.value[step]
                 yield None, node
+            elif isinstance(node.value, list) and isinstance(step, str):
+                # A list that stands for the sole argument, whose name the path has.
+                yield None, node
             else:
                 return
 

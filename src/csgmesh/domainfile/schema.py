@@ -81,6 +81,9 @@ class ShapePart(Part):
         elif source == "regions":
             for name, operand in value.items():
                 yield (source, name), operand
+        elif source in swept() and "shapes" in type(value).model_fields:
+            for i, operand in enumerate(value.shapes):
+                yield (source, "shapes", i), operand
         elif source in ("embed", "periodic") or source in swept():
             yield (source, "shape"), value.shape
 

@@ -138,7 +138,8 @@ class Builder:
         if source == "periodic":
             return self._periodic(operands[0], value, place)
         if source in swept():
-            arguments = value.given() | {"shape": operands[0]}
+            many = "shapes" in type(value).model_fields
+            arguments = value.given() | ({"shapes": operands} if many else {"shape": operands[0]})
             return self._at(place, lambda: Primitive.kinds[source](**arguments))
         return operands[0]
 

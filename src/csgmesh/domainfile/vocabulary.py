@@ -65,6 +65,10 @@ class Arguments(Part):
         return {name: getattr(self, name) for name in self.keys_written}
 
 
+#: Fields for arguments that are other shapes.
+SHAPES: Mapping[str, Any] = {"Shape": NestedShape, "Sequence[Shape]": list[NestedShape]}
+
+
 def arguments_of(
     function: Callable[..., Any], name: str, *, counts: bool = False
 ) -> type[Arguments]:
@@ -84,9 +88,7 @@ def arguments_of(
         if parameter.name == "self":
             continue
         annotation = str(getattr(parameter.annotation, "__name__", parameter.annotation))
-        kind = (
-            NestedShape if annotation == "Shape" else _nested(annotation) or field_type(annotation)
-        )
+        kind = SHAPES.get(annotation) or _nested(annotation) or field_type(annotation)
         if counts and kind is Whole:
             kind = Count
         if parameter.default is inspect.Parameter.empty:
@@ -142,8 +144,9 @@ def primitives() -> Mapping[str, type[Arguments]]:
 
 @cache
 def swept() -> frozenset[str]:
-    """Keys of the primitives that are made of another shape, their argument ``shape``."""
-    return frozenset(key for key, model in primitives().items() if "shape" in model.model_fields)
+    """Keys of primitives made of other shapes: their argument ``shape``, or a list ``shapes``."""
+    operands = {"shape", "shapes"}
+    return frozenset(key for key, model in primitives().items() if operands & {*model.model_fields})
 
 
 @cache

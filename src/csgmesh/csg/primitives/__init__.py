@@ -11,6 +11,7 @@ from csgmesh.csg.primitives.ellipse import Ellipse
 from csgmesh.csg.primitives.ellipsoid import Ellipsoid
 from csgmesh.csg.primitives.extrude import Extrude
 from csgmesh.csg.primitives.half_space import HalfSpace
+from csgmesh.csg.primitives.hull import Hull
 from csgmesh.csg.primitives.outline import Outline
 from csgmesh.csg.primitives.polygon import Polygon
 from csgmesh.csg.primitives.polyhedron import Polyhedron
@@ -30,6 +31,7 @@ __all__ = [
     "Ellipsoid",
     "Extrude",
     "HalfSpace",
+    "Hull",
     "Outline",
     "Polygon",
     "Polyhedron",
