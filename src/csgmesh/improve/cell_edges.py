@@ -10,6 +10,37 @@ import numpy as np
 from csgmesh import kernels
 
 
+def number_pairs(start: np.ndarray, end: np.ndarray, n: int) -> tuple[np.ndarray, np.ndarray]:
+    """Number unordered pairs of numbers below n, by their lower one, then by first appearance.
+
+    Returns
+    -------
+    number : (k,) int64
+        Of each pair.
+    ends : (p, 2) int64
+        The different pairs, the lower number first.
+
+    Examples
+    --------
+    >>> number_pairs(np.array([1, 2, 0]), np.array([2, 1, 2]), 3)
+    (array([1, 1, 0]), array([[0, 2],
+           [1, 2]]))
+    """
+    number = np.empty(len(start), np.int64)
+    ends = np.empty((len(start), 2), np.int64)
+    found = kernels.number_edges(
+        np.ascontiguousarray(start),
+        np.ascontiguousarray(end),
+        np.zeros(n + 1, np.int64),
+        np.empty(len(start), np.int32),
+        np.empty(n, np.int32),
+        np.full(n, -1, np.int32),
+        number,
+        ends.reshape(-1),
+    )
+    return number, ends[:found]
+
+
 @dataclass(frozen=True, eq=False)
 class CellEdges:
     """The edges of blocks of cells and of facets.
@@ -37,21 +68,10 @@ class CellEdges:
         start = np.concatenate([*(rows.ravel() for rows in blocks), facets[:, 0]])
         turned = [rows[:, [*range(1, rows.shape[1]), 0]].ravel() for rows in blocks]
         end = np.concatenate([*turned, facets[:, 1]])
-        edge = np.empty(len(start), np.int64)
-        ends = np.empty((len(start), 2), np.int64)
-        n = kernels.number_edges(
-            start,
-            end,
-            np.zeros(n_points + 1, np.int64),
-            np.empty(len(start), np.int32),
-            np.empty(n_points, np.int32),
-            np.full(n_points, -1, np.int32),
-            edge,
-            ends.reshape(-1),
-        )
+        edge, ends = number_pairs(start, end, n_points)
         widths = [np.full(len(rows), rows.shape[1]) for rows in blocks]
         begin = np.cumsum(np.concatenate([[0], *widths]))
-        return CellEdges(begin, edge[: begin[-1]], edge[begin[-1] :], ends[:n])
+        return CellEdges(begin, edge[: begin[-1]], edge[begin[-1] :], ends)
 
     @property
     def n_edges(self) -> int:

@@ -10,6 +10,8 @@ import numpy as np
 from csgmesh.errors import InputError
 from csgmesh.improve.refinement.division import Division
 from csgmesh.improve.refinement.marks import marked_cells
+from csgmesh.improve.refinement.solid_templates import CELLS, FACETS
+from csgmesh.improve.refinement.solids import refine_solid
 from csgmesh.mesh import Mesh
 from csgmesh.options import check_choice
 
@@ -17,7 +19,7 @@ METHODS = ("red-green", "longest edge", "newest vertex")
 
 
 def refine(mesh: Mesh, cells: Any = None, method: str = "red-green") -> Mesh:
-    """Divide all cells of a plane mesh, or some and what conformity asks for.
+    """Divide all cells of a mesh, or some of a plane mesh and what conformity asks for.
 
     Every edge of a marked cell is halved. Facets keep their names, regions and curves, cells their
     region; new boundary vertices lie on the exact curve, as far from either end of their facet. A
@@ -26,9 +28,10 @@ def refine(mesh: Mesh, cells: Any = None, method: str = "red-green") -> Mesh:
     Parameters
     ----------
     mesh : Mesh
-        Of triangles, quads or both.
+        Of straight triangles, quads or both; in space of tetrahedra, hexahedra, wedges, pyramids.
     cells : array_like or mapping of str to array_like, optional
-        A mask or cell numbers, counted through all kinds, or either by kind. Default: all cells.
+        A mask or cell numbers, counted through all kinds, or either by kind. Default: all cells,
+        which in space is all there is.
     method : {"red-green", "longest edge", "newest vertex"}
         How cells are divided; the last two know triangles only.
 
@@ -98,6 +101,9 @@ def refine(mesh: Mesh, cells: Any = None, method: str = "red-green") -> Mesh:
     (6, array([0, 0, 0, 0, 1, 1]))
     """
     check_choice("method", method, METHODS, "refine")
+    if mesh.dim == 3:
+        _check_solid(mesh, cells, method)
+        return refine_solid(mesh)
     _check_kinds(mesh, method)
     marked = None if cells is None else marked_cells(mesh, cells)
     division = Division.of(mesh, method)
@@ -119,6 +125,19 @@ def halve_edges(mesh: Mesh, pairs: np.ndarray) -> Mesh:
     division = Division.of(replace(mesh, cell_green={}), "red-green")
     division.mark_edges(pairs)
     return replace(division.finished(), cell_green={})
+
+
+def _check_solid(mesh: Mesh, cells: Any, method: str) -> None:
+    held = [kind for kind in (*mesh.cells, *mesh.facets) if kind not in (*CELLS, *FACETS)]
+    if held:
+        raise InputError(
+            "meshes of space are refined while their cells are straight; this one holds "
+            f"{', '.join(held)}: refine first, then elevate"
+        )
+    if cells is not None:
+        raise InputError("in space all cells are refined or none; got cells=")
+    if method != METHODS[0]:
+        raise InputError(f"{method} refinement is for plane meshes; this one has dim 3")
 
 
 def _check_kinds(mesh: Mesh, method: str) -> None:
