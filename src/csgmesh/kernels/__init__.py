@@ -87,6 +87,8 @@ _HOME = {
     "write_triangles": "tree.templates",
     "write_quads": "tree.templates",
     "core_edges": "tree.templates",
+    "tetra_orientations": "tetrahedra.checks",
+    "in_spheres": "tetrahedra.checks",
 }
 
 #: Loading a module sets numba's cache directory for a while, which all threads share.

@@ -1,0 +1,1 @@
+"""Tetrahedra: predicates of space, Delaunay insertion, flips, regions."""
