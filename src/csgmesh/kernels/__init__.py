@@ -89,6 +89,11 @@ _HOME = {
     "core_edges": "tree.templates",
     "tetra_orientations": "tetrahedra.checks",
     "in_spheres": "tetrahedra.checks",
+    "space_order": "tetrahedra.ordering",
+    "insert_in_space": "tetrahedra.delaunay",
+    "vertex_homes": "tetrahedra.stars",
+    "find_faces": "tetrahedra.stars",
+    "flood_space": "tetrahedra.regions",
 }
 
 #: Loading a module sets numba's cache directory for a while, which all threads share.

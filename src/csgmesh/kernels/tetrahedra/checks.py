@@ -106,9 +106,7 @@ def in_spheres(points: np.ndarray, cells: np.ndarray, others: np.ndarray) -> np.
     array([0], dtype=int8)
     """
     signs = np.empty(len(cells), np.int8)
-    _in_spheres(
-        _flat(points, np.float64), _flat(cells, np.int64), _flat(others, np.int64), signs
-    )
+    _in_spheres(_flat(points, np.float64), _flat(cells, np.int64), _flat(others, np.int64), signs)
     return signs
 
 

@@ -42,10 +42,7 @@ def are_collinear(xyz, a, b, c):
     for k in range(3):
         i = k
         j = (k + 1) % 3
-        if (
-            orient2d(xyz[a + i], xyz[a + j], xyz[b + i], xyz[b + j], xyz[c + i], xyz[c + j])
-            != 0.0
-        ):
+        if orient2d(xyz[a + i], xyz[a + j], xyz[b + i], xyz[b + j], xyz[c + i], xyz[c + j]) != 0.0:
             return False
     return True
 

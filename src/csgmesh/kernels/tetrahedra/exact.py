@@ -37,10 +37,10 @@ def are_small_multiples(x, n, largest):
     while unit * 256.0 >= largest and unit > 1e-300:
         unit *= 0.5
     magic = ROUNDING * unit
+    rest = 0.0
     for i in range(n):
-        if (x[i] + magic) - magic != x[i]:
-            return False
-    return True
+        rest += abs(((x[i] + magic) - magic) - x[i])
+    return rest == 0.0
 
 
 @njit(**HELPER)
@@ -92,9 +92,7 @@ def long_determinant(d, t, i, j, k):
     a = 3 * i
     b = 3 * j
     c = 3 * k
-    x, x_low = minor(
-        d[b + 1], t[b + 1], d[b + 2], t[b + 2], d[c + 1], t[c + 1], d[c + 2], t[c + 2]
-    )
+    x, x_low = minor(d[b + 1], t[b + 1], d[b + 2], t[b + 2], d[c + 1], t[c + 1], d[c + 2], t[c + 2])
     y, y_low = minor(d[b + 2], t[b + 2], d[b], t[b], d[c + 2], t[c + 2], d[c], t[c])
     z, z_low = minor(d[b], t[b], d[b + 1], t[b + 1], d[c], t[c], d[c + 1], t[c + 1])
     return sum_of_products(
@@ -115,7 +113,7 @@ def exact_volume(x, y, z, i, j, k, m, h, spare):
         a = j if left == 0 else i
         b = k if left <= 1 else j
         c = m if left <= 2 else k
-        for turn in range(3):
+        for _ in range(3):
             n_small = cross(x[a], y[a], x[b], y[b], p, q, small)
             n_part = scale_expansion(n_small, small, z[c] if left & 1 else -z[c], part)
             n_sum = add_expansions(n, h, n_part, part, spare)

@@ -58,7 +58,7 @@ def face_of(vert, t, a, b, c):
     found = 0
     for h in range(4 * t, 4 * t + 4):
         v = vert[h]
-        if v == a or v == b or v == c:
+        if v in (a, b, c):
             found += 1
         else:
             odd = h
