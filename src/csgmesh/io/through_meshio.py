@@ -104,6 +104,8 @@ def write(path: Path, mesh: Mesh) -> None:
     _foreign(path, "written", importlib.import_module(f"meshio.{form.module}").write, given)
     if form.module in ("ply", "obj"):
         _without_date(path)
+    if form.module == "abaqus" and mesh.dim == 3:
+        _plain_elements(path)
 
 
 def read(path: Path) -> Mesh:
@@ -163,3 +165,20 @@ def _without_date(path: Path) -> None:
     """Take the time of writing out of a header: equal meshes must give equal bytes."""
     text = path.read_bytes()
     path.write_bytes(re.sub(rb"(Created by meshio)[^\n]*", rb"\1", text, count=1))
+
+
+#: Of the names that Abaqus has for elements of one shape, meshio takes the last in its list, such
+#: as hybrid or rigid ones. These are the plain ones; facets are shells.
+_PLAIN = {
+    b"C3D10MH": b"C3D10",
+    b"C3D8RH": b"C3D8",
+    b"CPE6": b"STRI65",
+    b"R3D3": b"S3",
+    b"CAX4P": b"S4",
+}
+
+
+def _plain_elements(path: Path) -> None:
+    """Give a file of a mesh of space the names of plain elements."""
+    text = path.read_bytes()
+    path.write_bytes(re.sub(rb"(?<=TYPE=)\w+", lambda found: _PLAIN.get(found[0], found[0]), text))

@@ -13,6 +13,7 @@ from csgmesh.domain.surfaces import PLANE
 from csgmesh.domain.windings import winding_numbers
 from csgmesh.measures.results import Certificate, Check, offenders
 from csgmesh.measures.rules.arrays import check_indices, check_points
+from csgmesh.measures.space.curved import facet_middles, tetra_bounds
 from csgmesh.measures.space.jacobians import least_jacobians
 from csgmesh.measures.space.quality import SpaceQuality, space_quality
 from csgmesh.mesh import KINDS, Mesh
@@ -74,6 +75,12 @@ class SpaceCase:
     def facet_face(self) -> np.ndarray:
         """Face that each facet is, -1 for none, (f,)."""
         return self.faces.find(self.facets[0])
+
+    @cached_property
+    def facet_kind(self) -> np.ndarray:
+        """Kind of each facet, (f,)."""
+        facets = self.mesh.facets
+        return np.repeat(np.array(list(facets), str), [len(rows) for rows in facets.values()])
 
     @cached_property
     def facet_marker(self) -> np.ndarray:
@@ -172,9 +179,12 @@ def _points(case: SpaceCase) -> Check:
 def check_orientation(case: SpaceCase) -> Check:
     """The Jacobian is positive all over each cell."""
     rule, bad, before = "orientation", [_NONE], 0
-    for rows in case.corners.values():
+    for kind, rows in case.corners.items():
         base = {4: "tetra", 8: "hexahedron", 6: "wedge", 5: "pyramid"}[rows.shape[1]]
         least = least_jacobians(case.mesh.points, base, rows)
+        if kind == "tetra10":
+            nodes = case.mesh.points[case.mesh.cells[kind]]
+            least = np.minimum(least, tetra_bounds(nodes).least)
         bad.append(np.flatnonzero(~(least > 0.0)) + before)
         before += len(rows)
     numbers = np.concatenate(bad)
@@ -256,6 +266,34 @@ def check_names(case: SpaceCase) -> Check:
     return Check.of(rule, len(rows), failures)
 
 
+def check_edge_nodes(case: SpaceCase) -> Check:
+    """Edges of curved cells have one node each; those of facets lie on the exact surfaces."""
+    rule, mesh = "edge nodes", case.mesh
+    blocks = [(k, rows) for k, rows in (*mesh.cells.items(), *mesh.facets.items())]
+    blocks = [(kind, rows) for kind, rows in blocks if KINDS[kind].order > 1]
+    if not blocks:
+        return Check.skipped(rule, "the cells are straight")
+    ends, nodes = [], []
+    for kind, rows in blocks:
+        ends.append(np.sort(rows[:, np.array(KINDS[kind].edges)], axis=2).reshape(-1, 2))
+        nodes.append(rows[:, KINDS[kind].n_corners :].reshape(-1, 1))
+    known = np.unique(np.hstack([np.concatenate(ends), np.concatenate(nodes)]), axis=0)
+    twice = known[1:][(known[1:, :2] == known[:-1, :2]).all(axis=1)]
+    failures = offenders(
+        rule, "edge", twice[:, 2], mesh.points[twice[:, 2]], "has|have more than one node"
+    )
+    off = np.zeros(len(case.facet_kind))
+    curved = case.facet_kind == "triangle6"
+    if case.domain is not None and curved.any():
+        places = np.repeat(case.facet_places(np.arange(len(off)))[:, None], 6, axis=1)
+        places[curved] = mesh.points[mesh.facets["triangle6"]]
+        off = np.where(curved, case.off_surfaces(places), 0.0)
+        bad = np.flatnonzero(~(off <= case.tolerance))
+        complaint = "has|have nodes off the exact surfaces of its names"
+        failures += offenders(rule, "facet", bad, case.facet_places(bad), complaint)
+    return Check.of(rule, len(known), failures)
+
+
 def check_volume(case: SpaceCase) -> Check:
     """The cells of each region fill the domain's volume, to the bound on chords."""
     rule, points = "volume", case.mesh.points
@@ -267,7 +305,7 @@ def check_volume(case: SpaceCase) -> Check:
     n = len(case.mesh.region_names)
     given = np.bincount(case.cell_region[:-1], case.quality.volume, n)
     # Each facet may be off by its distance from the exact surface all over its area.
-    slack = float((_sags(case)[case.triangles[:, 3]] * _areas(case)).sum())
+    slack = float((_sags(case, curved=True)[case.triangles[:, 3]] * _areas(case)).sum())
     bent = domain.surfaces.kind[domain.facet_surface] != PLANE
     slack += domain.deviation * float(domain.facet_areas()[bent].sum())
     slack += AREA_SHARE * domain.diagonal**3 + coordinate_ulp(points) * float(_areas(case).sum())
@@ -294,9 +332,12 @@ def _areas(case: SpaceCase) -> np.ndarray:
     return 0.5 * np.asarray(np.sqrt((np.cross(b - a, c - a) ** 2).sum(axis=1)))
 
 
-def _sags(case: SpaceCase) -> np.ndarray:
-    """A bound of each facet's distance from its exact surface, (f,)."""
+def _sags(case: SpaceCase, *, curved: bool = False) -> np.ndarray:
+    """A bound of the distance of each facet, flat or as curved as it is, from its surface, (f,)."""
     middles = case.facet_places(np.arange(len(case.facets[0])))
+    if curved and "triangle6" in case.mesh.facets:
+        own = case.facet_kind == "triangle6"
+        middles[own] = facet_middles(case.mesh.points[case.mesh.facets["triangle6"]])
     off = case.off_surfaces(middles[:, None])
     # The middle of a facet is where it is furthest off, but for thin ones. A facet that has corners
     # elsewhere fails for that, and must not excuse a wrong volume as well.
@@ -333,6 +374,7 @@ _RULES: tuple[tuple[str, Callable[[SpaceCase], Check]], ...] = (
     ("conforming", check_conforming),
     ("facets", check_facets),
     ("names", check_names),
+    ("edge nodes", check_edge_nodes),
     ("volume", check_volume),
     ("samples", check_samples),
 )

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from csgmesh.errors import InputError
+from csgmesh.measures.space.curved import curved_volumes, tetra_bounds
 from csgmesh.measures.space.jacobians import least_jacobians
 from csgmesh.measures.summary import extremes, headline, histogram, table
 from csgmesh.mesh import KINDS, Mesh
@@ -26,13 +27,15 @@ class SpaceQuality:
         flat, at the ends of the edge.
     scaled_jacobian : (n_cells,) float64
         Of hexahedra: the smallest over the corners of the determinant of the unit vectors along the
-        three edges; 1 for a box, below 0 where the corner is turned inside out. NaN for others.
+        three edges; 1 for a box, below 0 where the corner is turned inside out. Of curved
+        tetrahedra: a lower bound of the Jacobian across the cell over an upper one. NaN for others.
     min_jacobian : (n_cells,) float64
         A lower bound of the Jacobian determinant over the whole cell, relative to its mean;
         positive exactly where the cell is valid everywhere.
     min_edge, max_edge : (n_cells,) float64
     volume : (n_cells,) float64
-        Of faces that are bilinear where they are not flat; negative for cells inside out.
+        Of faces that are bilinear where they are not flat, exact for curved cells; negative for
+        cells inside out.
     n_points, n_cells : int
     n_by_kind : dict of str to int
     """
@@ -108,7 +111,8 @@ def space_quality(mesh: Mesh) -> SpaceQuality:
                 f"{kind} cells must name points 0 to {mesh.n_points - 1}; "
                 f"got {rows.min()} to {rows.max()}"
             )
-        parts.append(_measured(mesh.points, kind, rows[:, : KINDS[kind].n_corners]))
+        measures = _measured(mesh.points, kind, rows[:, : KINDS[kind].n_corners])
+        parts.append(_curved(mesh.points[rows], measures) if kind == "tetra10" else measures)
     empty = [np.zeros(0)] * len(_LABELS)
     columns = [np.concatenate(column) for column in zip(empty, *parts, strict=True)]
     counts = {kind: len(rows) for kind, rows in mesh.cells.items()}
@@ -137,6 +141,15 @@ def _measured(points: np.ndarray, kind: str, rows: np.ndarray) -> list[np.ndarra
         jacobian = _scaled_jacobian(corners)
     shortest, longest = np.minimum.reduce(lengths), np.maximum.reduce(lengths)
     return [low, high, jacobian, least, shortest, longest, volume]
+
+
+def _curved(nodes: np.ndarray, straight: list[np.ndarray]) -> list[np.ndarray]:
+    """Volumes and Jacobians of curved tetrahedra in place of those of the straight ones."""
+    low, high, _, _, shortest, longest, _ = straight
+    volume, bounds = curved_volumes(nodes), tetra_bounds(nodes)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        least = bounds.least / np.abs(6.0 * volume)
+    return [low, high, bounds.ratio, least, shortest, longest, volume]
 
 
 def _straight(kind: str) -> str:
