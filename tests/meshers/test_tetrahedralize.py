@@ -13,6 +13,7 @@ from tests.meshers.plc_surfaces import surface_of
 
 NONE = np.zeros((0, 3))
 CUBE = cm.Box((0, 0, 0), (1, 1, 1))
+PLATE = cm.Box((0, 0, 0), (1, 1, 0.02))
 FRAME = (CUBE - cm.Box((0.3, 0.3, -1), (0.7, 0.7, 2))).rotate(37, axis=(1, 2, 3))
 WEDGE = cm.Polygon([(0, 0), (1, 0), (1, np.tan(np.radians(10)))])
 
@@ -28,6 +29,8 @@ SOLIDS = {
     "ball touching from inside": (CUBE - cm.Ball((0.5, 0.5, 0.5), 0.5), 0.2),
     "thin plate": (cm.Box((0, 0, 0), (1, 1, 0.01)), 0.1),
     "wedge of ten degrees": (cm.Extrude(WEDGE, 1), 0.15),
+    "cube less a ball at a corner": (CUBE - cm.Ball((0, 0, 0), 0.5), 0.2),
+    "thin plate with a bore": (PLATE - cm.Cylinder((0.5, 0.5, -1), (0.5, 0.5, 1), 0.2), 0.1),
     "torus": (cm.Torus((0, 0, 0), (0, 0, 1), 1, 0.3), 0.3),
     "two balls": (cm.Ball((0, 0, 0), 1) | cm.Ball((2.5, 0, 0), 1), 0.4),
     "thin shell": (cm.Ball((0, 0, 0), 1) - cm.Ball((0, 0, 0), 0.95), 0.4),

@@ -94,6 +94,8 @@ _HOME = {
     "vertex_homes": "tetrahedra.stars",
     "find_faces": "tetrahedra.stars",
     "flood_space": "tetrahedra.regions",
+    "mark_edges": "tetrahedra.recovery",
+    "recover_triangles": "tetrahedra.recovery",
 }
 
 #: Loading a module sets numba's cache directory for a while, which all threads share.

@@ -18,7 +18,8 @@ def tetrahedralize(
 
     The Delaunay tetrahedra of all points, by insertion along a Hilbert curve in rounds (Amenta,
     Choi, Rote 2003; Bowyer and Watson 1981). Where they have the other diagonal of two triangles
-    of a face that is nearly flat there, the surface gets it, too.
+    of a face that is nearly flat there, the surface gets it, too; what is missing then is recovered
+    by flips.
 
     Parameters
     ----------
@@ -47,6 +48,8 @@ def tetrahedralize(
         raise MeshingError(_twins(net, points))
     triangles, found = swap_missing(net, points, surface.triangles, surface.face, surface.segments)
     missing = np.flatnonzero(found < 0)
+    while len(missing) and net.recover(triangles, missing):
+        missing = np.flatnonzero(net.faces(triangles) < 0)
     if len(missing):
         return Tetrahedra(
             points,

@@ -13,6 +13,8 @@ _ROOM, _SLICE, _DUPLICATE, _COPLANAR, _TETS = 1, 2, 4, 7, 10
 _CAVITY = 4096
 #: Slots a point needs, at first: there are 6.8 tetrahedra a point where points lie at random.
 _SLOTS = 7.5
+#: Longest ring of an edge that flips look at.
+_WIDEST = 16
 #: How far the box around a domain is, in diagonals: far enough that the spheres of large flat
 #: triangles of the surface do not reach its corners.
 _FAR = 4.0
@@ -84,22 +86,61 @@ class Net:
 
     def grow(self) -> None:
         """Make half as much room again for tetrahedra."""
-        slots = len(self.mark) * 3 // 2
+        have = len(self.mark)
+        slots = have * 3 // 2 + 8192
         for name, width in (("vert", 4), ("nei", 4), ("mark", 1), ("free", 1)):
             longer = np.empty(width * slots, np.int32)
-            longer[: width * len(self.mark)] = getattr(self, name)
+            longer[: width * have] = getattr(self, name)
             setattr(self, name, longer)
 
-    def faces(self, triangles: np.ndarray) -> np.ndarray:
-        """Where triangles (k, 3) of points are faces, (k,) int64; -1 where there is no such."""
+    @property
+    def homes(self) -> np.ndarray:
+        """A tetrahedron of each vertex."""
         if self._homes is None:
             self._homes = np.empty(len(self.order), np.int32)
             kernels.vertex_homes(self.vert, self._homes, self.n_slots)
+        return self._homes
+
+    def recover(self, triangles: np.ndarray, missing: np.ndarray) -> int:
+        """Flip until missing triangles (k,) of a surface (m, 3) are faces; how many were done."""
+        corners = self.rank[triangles]
+        edges = np.ascontiguousarray(corners[:, [0, 1, 1, 2, 2, 0]]).reshape(-1)
+        stays = np.full(4 << len(edges).bit_length(), -1, np.int64)
+        kernels.mark_edges(edges, stays)
+        wanted = np.ascontiguousarray(corners[missing]).reshape(-1)
+        ring, worth = np.empty((4, 4 * _WIDEST), np.int64), np.empty(_WIDEST**2)
+        apex, state = np.empty(_WIDEST**2, np.int64), np.zeros(2, np.int64)
+        while True:
+            status = kernels.recover_triangles(
+                self.xyz,
+                self.vert,
+                self.nei,
+                self.mark,
+                self.free,
+                self.homes,
+                stays,
+                self.work,
+                ring,
+                apex,
+                worth,
+                self.counts,
+                wanted,
+                state,
+            )
+            if status == _ROOM:
+                self.widen()
+            elif status == _TETS:
+                self.grow()
+            elif status != _SLICE:
+                return int(state[1])
+
+    def faces(self, triangles: np.ndarray) -> np.ndarray:
+        """Where triangles (k, 3) of points are faces, (k,) int64; -1 where there is no such."""
         out = np.empty(len(triangles), np.int64)
         counts = np.array([0, self.counts[8]])
         corners = self.rank[triangles].reshape(-1)
         while kernels.find_faces(
-            self.vert, self.nei, self.mark, self._homes, corners, out, self.work, counts
+            self.vert, self.nei, self.mark, self.homes, corners, out, self.work, counts
         ):
             self.widen()
         self.counts[8] = counts[1]

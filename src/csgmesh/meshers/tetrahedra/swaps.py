@@ -9,14 +9,19 @@ from csgmesh.meshers.tetrahedra.net import Net
 #: Cosine between the normals of two triangles and those of their swap, above which the surface is
 #: flat enough there for either diagonal.
 _FLAT = 0.8
-#: Rounds of swaps: each one settles at least one diagonal, and most settle all of them.
-_ROUNDS = 12
+#: Rounds of swaps. Each takes one of a triangle's edges, so a fan of long ones takes several.
+_ROUNDS = 60
+#: Cotangents of the two angles opposite to an edge add up to less than this where the other
+#: diagonal is better by more than rounding.
+_BETTER = -1e-9
 
 
 def swap_missing(
     net: Net, points: np.ndarray, triangles: np.ndarray, face: np.ndarray, fixed: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
     """Swap edges of the surface where that makes faces of more triangles.
+
+    Missing triangles are also made Delaunay in their face, for only such can be found.
 
     Parameters
     ----------
@@ -42,8 +47,9 @@ def swap_missing(
         rows, swapped = candidates(points, triangles, face, fixed, found < 0)
         there = net.faces(swapped.reshape(-1, 3)).reshape(-1, 2)
         gain = (there >= 0).sum(axis=1) - (found[rows] >= 0).sum(axis=1)
-        order = np.argsort(-gain, kind="stable")
-        order = order[gain[order] > 0]
+        worth = np.where(gain == 0, 0.5 * is_better(points, swapped), gain)
+        order = np.argsort(-worth, kind="stable")
+        order = order[worth[order] > 0]
         if not len(order):
             break
         chosen = order[apart(rows[order], len(triangles))]
@@ -85,6 +91,18 @@ def candidates(
         for j in range(2):
             is_flat &= (old[:, i] * new[:, j]).sum(axis=1) > _FLAT
     return np.stack([t, u], axis=1)[is_flat], swapped[is_flat]
+
+
+def is_better(points: np.ndarray, swapped: np.ndarray) -> np.ndarray:
+    """Whether pairs of triangles (k, 2, 3) from `candidates` are Delaunay, and were not, (k,)."""
+    c, a, d = (points[swapped[:, 0, k]] for k in range(3))
+    b = points[swapped[:, 1, 1]]
+    return np.asarray(_cotangent(a - c, b - c) + _cotangent(a - d, b - d) < _BETTER)
+
+
+def _cotangent(u: np.ndarray, v: np.ndarray) -> np.ndarray:
+    sine = np.sqrt((np.cross(u, v) ** 2).sum(axis=1))
+    return np.asarray((u * v).sum(axis=1) / np.where(sine > 0.0, sine, 1.0))
 
 
 def normals(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:
