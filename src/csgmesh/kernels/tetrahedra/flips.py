@@ -179,7 +179,7 @@ def find_ring(flips, t, a, b):
     ia = slot_of(vert, t, a)
     ib = slot_of(vert, t, b)
     r = NO
-    while r == ia or r == ib:
+    while r in (ia, ib):
         r += 1
     s = 6 - ia - ib - r
     if not sees(flips, a, b, vert[4 * t + r], vert[4 * t + s]):

@@ -170,11 +170,10 @@ def clear_triangle(flips, a, b, c, room):
 @njit(**HELPER)
 def face_at(flips, t, a, b, c):
     """Whether a, b, c is a face around the edge a, b of t."""
-    n = find_ring(flips, t, a, b)
-    for k in range(n):
-        if face_of(flips.vert, flips.tets[k], a, b, c) >= 0:
-            return True
-    return False
+    is_there = False
+    for k in range(find_ring(flips, t, a, b)):
+        is_there = is_there or face_of(flips.vert, flips.tets[k], a, b, c) >= 0
+    return is_there
 
 
 @njit(**HELPER)

@@ -10,6 +10,9 @@ from csgmesh.meshers.tetrahedra.net import MOST_POINTS, Net
 from csgmesh.meshers.tetrahedra.result import Tetrahedra
 from csgmesh.meshers.tetrahedra.swaps import swap_missing
 
+#: Triangles recovered late can make way for others that could not be recovered before them.
+_PASSES = 4
+
 
 def tetrahedralize(
     surface: SurfaceMesh, inner: np.ndarray, kept: np.ndarray | None = None
@@ -48,7 +51,9 @@ def tetrahedralize(
         raise MeshingError(_twins(net, points))
     triangles, found = swap_missing(net, points, surface.triangles, surface.face, surface.segments)
     missing = np.flatnonzero(found < 0)
-    while len(missing) and net.recover(triangles, missing):
+    for _ in range(_PASSES):
+        if not len(missing) or not net.recover(triangles, missing):
+            break
         missing = np.flatnonzero(net.faces(triangles) < 0)
     if len(missing):
         return Tetrahedra(
