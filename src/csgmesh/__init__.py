@@ -32,6 +32,7 @@ _HOME = {
         "EmbeddedPath",
         "EmbeddedPoints",
         "Extrude",
+        "FacetedSolid",
         "HalfSpace",
         "Hull",
         "Outline",
@@ -71,7 +72,7 @@ _HOME = {
         "UnboundedDomainError",
     ),
     "csgmesh.improve": ("elevate", "refine", "smooth"),
-    "csgmesh.io": ("from_meshio", "read", "to_meshio", "to_skfem", "write"),
+    "csgmesh.io": ("from_meshio", "read", "read_shape", "to_meshio", "to_skfem", "write"),
     "csgmesh.measures": ("Certificate", "Quality", "SizeConformity", "quality", "size_conformity"),
     "csgmesh.mesh": ("Mesh",),
     "csgmesh.meshers": (
@@ -136,6 +137,7 @@ __all__ = [
     "EmptyDomainError",
     "EvaluationError",
     "Extrude",
+    "FacetedSolid",
     "FeatureSize",
     "FileFormatError",
     "HalfSpace",
@@ -195,6 +197,7 @@ __all__ = [
     "nearest_neighbours",
     "quality",
     "read",
+    "read_shape",
     "refine",
     "size_conformity",
     "smooth",
@@ -223,6 +226,7 @@ if TYPE_CHECKING:
         EmbeddedPath,
         EmbeddedPoints,
         Extrude,
+        FacetedSolid,
         HalfSpace,
         Hull,
         Outline,
@@ -262,7 +266,7 @@ if TYPE_CHECKING:
         UnboundedDomainError,
     )
     from csgmesh.improve import elevate, refine, smooth
-    from csgmesh.io import from_meshio, read, to_meshio, to_skfem, write
+    from csgmesh.io import from_meshio, read, read_shape, to_meshio, to_skfem, write
     from csgmesh.measures.certificate import Certificate
     from csgmesh.measures.conformity import SizeConformity, size_conformity
     from csgmesh.measures.quality import Quality, quality

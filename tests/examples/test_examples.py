@@ -233,3 +233,15 @@ def test_solids(run):
     assert cm.evaluate(solids["bowl"]()).names[:3] == tuple(
         f"bowl.side.{part}" for part in ("outside", "inside", "brim")
     )
+
+
+def test_openscad(run):
+    printed, folder = run("openscad")
+    volume, bore = (float(re.search(rf"{w}: (\S+)", printed)[1]) for w in ("volume", "bore"))
+    # A plate with round corners, a block on it, two bores through the plate, a seat for a rod of
+    # radius 8 at the block's top, and a hexagonal pocket below, whose corners are on radius 5.
+    plate = (60 * 30 - (4 - np.pi) * 36) * 8 - 2 * np.pi * 9 * 8
+    pocket = 4.9 * 6 * 0.5 * 25 * np.sin(np.pi / 3)
+    assert volume == pytest.approx(plate + 24 * 24 * 16 - np.pi * 32 * 24 - pocket, rel=1e-3)
+    assert bore == pytest.approx(np.pi * 8 * 24, rel=2e-3)  # in chords 0.04 deep
+    check_picture(folder / "clamp.png")

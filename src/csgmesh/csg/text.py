@@ -89,7 +89,8 @@ def literal(value: Any) -> str:
     if isinstance(value, np.ndarray):
         if len(value) > WIDEST_EXPRESSION:
             return f"<{len(value):,} points>"
-        return f"[{', '.join(literal(tuple(row)) for row in value.tolist())}]"
+        rows = (tuple(row) if isinstance(row, list) else row for row in value.tolist())
+        return f"[{', '.join(map(literal, rows))}]"
     if isinstance(value, tuple):
         inner = ", ".join(map(literal, value))
         return f"({inner},)" if len(value) == 1 else f"({inner})"

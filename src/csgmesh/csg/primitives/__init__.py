@@ -10,6 +10,7 @@ from csgmesh.csg.primitives.disk import Disk
 from csgmesh.csg.primitives.ellipse import Ellipse
 from csgmesh.csg.primitives.ellipsoid import Ellipsoid
 from csgmesh.csg.primitives.extrude import Extrude
+from csgmesh.csg.primitives.faceted_solid import FacetedSolid
 from csgmesh.csg.primitives.half_space import HalfSpace
 from csgmesh.csg.primitives.hull import Hull
 from csgmesh.csg.primitives.outline import Outline
@@ -30,6 +31,7 @@ __all__ = [
     "Ellipse",
     "Ellipsoid",
     "Extrude",
+    "FacetedSolid",
     "HalfSpace",
     "Hull",
     "Outline",

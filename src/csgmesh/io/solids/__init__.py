@@ -1,0 +1,5 @@
+"""Shapes from other programs' files."""
+
+from csgmesh.io.solids.files import read_shape
+
+__all__ = ["read_shape"]
