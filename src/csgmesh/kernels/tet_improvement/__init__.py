@@ -1,0 +1,1 @@
+"""Better tetrahedra: flips, moves of vertices, vertices put in and taken out."""
