@@ -104,6 +104,7 @@ _HOME = {
     "flood_space": "tetrahedra.regions",
     "mark_edges": "tetrahedra.recovery",
     "recover_triangles": "tetrahedra.recovery",
+    "find_containing": "tetrahedra.locating",
 }
 
 #: Loading a module sets numba's cache directory for a while, which all threads share.

@@ -83,7 +83,7 @@ class Locator:
 
     def cells_of(self, points: ArrayLike) -> np.ndarray:
         """Lowest number of a cell that contains each point, -1 for none."""
-        queries = _queries(points)
+        queries = query_points(points, 2)
         none = np.iinfo(np.int64).max
         cell = np.full(len(queries), none)
         for query, triangle in self._hits(queries):
@@ -94,22 +94,14 @@ class Locator:
         """All pairs (point, cell) where the closed cell contains the point, (k, 2), sorted."""
         pairs = [
             np.stack([query, self.triangle_cell[triangle]], axis=1)
-            for query, triangle in self._hits(_queries(points))
+            for query, triangle in self._hits(query_points(points, 2))
         ]
         return np.unique(np.concatenate([np.zeros((0, 2), np.int64), *pairs]), axis=0)
 
     def interpolate(self, values: ArrayLike, points: ArrayLike) -> np.ndarray:
         """Values at points from values at the corners; NaN outside."""
-        given = np.asarray(values)
-        if given.dtype.kind not in "biufc":
-            raise InputError(f"values must be numbers; got {reprlib.repr(values)}")
-        given = given.astype(np.complex128 if given.dtype.kind == "c" else np.float64)
-        if given.ndim not in (1, 2) or len(given) != len(self.points):
-            raise InputError(
-                f"values must have shape ({len(self.points)},) or ({len(self.points)}, k), "
-                f"one row a point of the mesh; got {given.shape}"
-            )
-        queries = _queries(points)
+        given = checked_values(values, len(self.points))
+        queries = query_points(points, 2)
         cell = self.cells_of(queries)
         columns = given.reshape(len(given), -1)
         out = np.full((len(queries), columns.shape[1]), np.nan, given.dtype)
@@ -190,19 +182,34 @@ def _range(x: np.ndarray, triangles: np.ndarray) -> tuple[np.ndarray, np.ndarray
     return np.minimum(np.minimum(a, b), c), np.maximum(np.maximum(a, b), c)
 
 
-def _queries(points: ArrayLike) -> np.ndarray:
+def checked_values(values: ArrayLike, n_points: int) -> np.ndarray:
+    """Values at the points of a mesh as float64 or complex128, a row a point."""
+    given = np.asarray(values)
+    if given.dtype.kind not in "biufc":
+        raise InputError(f"values must be numbers; got {reprlib.repr(values)}")
+    given = given.astype(np.complex128 if given.dtype.kind == "c" else np.float64)
+    if given.ndim not in (1, 2) or len(given) != n_points:
+        raise InputError(
+            f"values must have shape ({n_points},) or ({n_points}, k), "
+            f"one row a point of the mesh; got {given.shape}"
+        )
+    return given
+
+
+def query_points(points: ArrayLike, dim: int) -> np.ndarray:
+    """Places to look at as (n, dim) float64; a single one counts as one row."""
     try:
         queries = np.asarray(points, float)
     except (TypeError, ValueError):
         raise InputError(
-            f"points must be an (n, 2) array of numbers; got {reprlib.repr(points)}"
+            f"points must be an (n, {dim}) array of numbers; got {reprlib.repr(points)}"
         ) from None
     if queries.size == 0:
-        return np.zeros((0, 2))
-    if queries.shape == (2,):
-        queries = queries.reshape(1, 2)
-    if queries.ndim != 2 or queries.shape[1] != 2:
-        raise InputError(f"points must have shape (n, 2); got {queries.shape}")
+        return np.zeros((0, dim))
+    if queries.shape == (dim,):
+        queries = queries.reshape(1, dim)
+    if queries.ndim != 2 or queries.shape[1] != dim:
+        raise InputError(f"points must have shape (n, {dim}); got {queries.shape}")
     return queries
 
 

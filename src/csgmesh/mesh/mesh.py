@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from csgmesh.errors import InputError
 from csgmesh.mesh.blocks import Block, frozen_blocks
 from csgmesh.mesh.description import counted, listed, same
 from csgmesh.mesh.fields import by_kind, connectivity, frozen, lineage, marker_names, point_array
@@ -21,6 +20,7 @@ if TYPE_CHECKING:
     from csgmesh.domain.curves import Curves
     from csgmesh.domain.pslg import Pslg
     from csgmesh.mesh.locate import Locator
+    from csgmesh.mesh.solid_location import SolidLocator
 
 Arrays = Mapping[str, np.ndarray]
 
@@ -310,8 +310,8 @@ class Mesh:
         -------
         ndarray (n,) of int64
             Cell numbers, counted through all kinds in the order of `cells`; -1 outside the mesh.
-            A point on an edge or a vertex shared by several cells gets the lowest of their
-            numbers. Decided exactly, without a tolerance.
+            A point that several cells share gets the lowest of their numbers. Decided exactly, by
+            the corners of curved cells; a warped face is two triangles at its lowest corner.
 
         Examples
         --------
@@ -320,10 +320,10 @@ class Mesh:
         >>> mesh.locate([[0.5, 0.5], [0.6, 0.5]])
         array([ 0, -1])
         """
-        return self.locator.cells_of(points)
+        return self._finder.cells_of(points)
 
     def interpolate(self, values: ArrayLike, points: ArrayLike) -> np.ndarray:
-        """Values at points, linear on triangles (bilinear on quads) from values at the vertices.
+        """Values at points from values at the vertices, as cells are mapped: bilinear on quads.
 
         Parameters
         ----------
@@ -349,7 +349,7 @@ class Mesh:
         >>> mesh.interpolate([0, 1, 2], [[0.5, 0.5], [2, 2]])
         array([1.5, nan])
         """
-        return self.locator.interpolate(values, points)
+        return self._finder.interpolate(values, points)
 
     def equals(self, other: Mesh) -> bool:
         """Whether all arrays and names are the same, to the last bit, but for `info` and `blocks`.
@@ -384,14 +384,16 @@ class Mesh:
 
     @cached_property
     def locator(self) -> Locator:
-        """Search structure behind `locate`, built at its first use."""
+        """Search structure behind `locate` of a plane mesh, built at its first use."""
         from csgmesh.mesh.locate import Locator
 
-        if self.dim != 2:
-            raise InputError(
-                f"locate and interpolate need a plane mesh; this one has dim {self.dim}"
-            )
         return Locator.of(self.points, self.cells)
+
+    @cached_property
+    def _finder(self) -> Locator | SolidLocator:
+        from csgmesh.mesh.solid_location import SolidLocator
+
+        return self.locator if self.dim == 2 else SolidLocator.of(self.points, self.cells)
 
 
 _NOT_COMPARED = ("curves", "domain", "info", "blocks")
