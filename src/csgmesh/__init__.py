@@ -72,7 +72,16 @@ _HOME = {
         "UnboundedDomainError",
     ),
     "csgmesh.improve": ("elevate", "refine", "smooth"),
-    "csgmesh.io": ("from_meshio", "read", "read_shape", "to_meshio", "to_skfem", "write"),
+    "csgmesh.io": (
+        "from_meshio",
+        "read",
+        "read_shape",
+        "to_meshio",
+        "to_pyvista",
+        "to_skfem",
+        "to_trimesh",
+        "write",
+    ),
     "csgmesh.measures": ("Certificate", "Quality", "SizeConformity", "quality", "size_conformity"),
     "csgmesh.mesh": ("Mesh",),
     "csgmesh.meshers": (
@@ -203,7 +212,9 @@ __all__ = [
     "smooth",
     "symmetric_difference",
     "to_meshio",
+    "to_pyvista",
     "to_skfem",
+    "to_trimesh",
     "union",
     "voronoi",
     "worst_cells",
@@ -266,7 +277,16 @@ if TYPE_CHECKING:
         UnboundedDomainError,
     )
     from csgmesh.improve import elevate, refine, smooth
-    from csgmesh.io import from_meshio, read, read_shape, to_meshio, to_skfem, write
+    from csgmesh.io import (
+        from_meshio,
+        read,
+        read_shape,
+        to_meshio,
+        to_pyvista,
+        to_skfem,
+        to_trimesh,
+        write,
+    )
     from csgmesh.measures.certificate import Certificate
     from csgmesh.measures.conformity import SizeConformity, size_conformity
     from csgmesh.measures.quality import Quality, quality

@@ -150,7 +150,9 @@ def test_unknown_options_and_arguments(tmp_path, plate):
         cm.InputError, match=r"a \.vtu file has no option 'comprss'; did you mean 'comp"
     ):
         cm.write(tmp_path / "a.vtu", plate, comprss=True)
-    with pytest.raises(cm.InputError, match=r"a \.stl file has no option 'binary'; there are none"):
+    with pytest.raises(cm.InputError, match=r"a \.off file has no option 'binary'; there are none"):
+        cm.write(tmp_path / "a.off", plate, binary=True)
+    with pytest.raises(cm.InputError, match="of a plane mesh is text"):
         cm.write(tmp_path / "a.stl", plate, binary=True)
     with pytest.raises(cm.InputError, match="encoding must be one of 'raw', 'base64'; got 'hex'"):
         cm.write(tmp_path / "a.vtu", plate, encoding="hex")

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from csgmesh.errors import FileFormatError
-from csgmesh.io import FORMATS
+from csgmesh.io import FORMATS, SOLID_FORMATS
 from csgmesh.options import near
 
 PICTURES = (".png", ".svg", ".pdf")
@@ -34,7 +34,7 @@ def check_suffix(path: Path) -> None:
     --------
     >>> check_suffix(Path("plate.msh"))
     """
-    known = [*FORMATS, *PICTURES]
+    known = [*FORMATS, *SOLID_FORMATS, *PICTURES]
     if path.suffix.lower() not in known:
         hint = near(path.suffix.lower(), known)
         raise FileFormatError(f"{path}: unknown suffix {path.suffix!r}; {hint}")

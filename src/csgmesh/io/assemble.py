@@ -150,7 +150,7 @@ def _plane(listing: Listing) -> np.ndarray:
             at = int(np.argmax(raised))
             raise FileFormatError(
                 f"{listing.path}: point {at} has z = {points[at, 2]:g}; only plane meshes, "
-                "with z = 0, can be read"
+                "with z = 0, can be read; csgmesh.read_shape reads surfaces of solids"
             )
     return np.ascontiguousarray(points[:, :2])
 

@@ -19,6 +19,7 @@ from csgmesh.mesh import Mesh
 from csgmesh.options import check_options, near
 
 _FOREIGN = "csgmesh.io.through_meshio"
+_SURFACE = "csgmesh.io.surface_formats"
 
 #: Module of each suffix.
 FORMATS: Mapping[str, str] = MappingProxyType(
@@ -32,12 +33,15 @@ FORMATS: Mapping[str, str] = MappingProxyType(
         ".bdf": _FOREIGN,
         ".avs": _FOREIGN,
         ".vol": _FOREIGN,
-        ".stl": _FOREIGN,
-        ".obj": _FOREIGN,
-        ".off": _FOREIGN,
-        ".ply": _FOREIGN,
+        ".stl": "csgmesh.io.stl",
+        ".obj": _SURFACE,
+        ".off": _SURFACE,
+        ".ply": _SURFACE,
     }
 )
+
+#: Formats of solids' surfaces, written only.
+SOLID_FORMATS: Mapping[str, str] = MappingProxyType({".3mf": _SURFACE, ".glb": _SURFACE})
 
 _PICTURES = (".png", ".svg", ".pdf", ".jpg", ".jpeg")
 
@@ -51,13 +55,16 @@ def write(path: str | os.PathLike[str], mesh: Mesh, **options: object) -> None:
     ----------
     path : str or PathLike
         ``.vtu`` (ParaView), ``.msh`` (Gmsh 4.1) and ``.npz`` (everything, lossless) are written
-        natively; ``.vtk .inp .mesh .bdf .avs .vol .stl .obj .off .ply`` through meshio.
+        natively; ``.vtk .inp .mesh .bdf .avs .vol .stl .obj .off .ply`` through meshio. Of a mesh
+        of space ``.stl .obj .off .ply .3mf .glb`` hold the outer boundary as triangles: ``.obj``,
+        ``.glb`` and text STL with its names as groups, ``.3mf`` with an object a region.
     mesh : Mesh
         What to write.
     **options
         Of the format. ``.vtu``: `compress` (default False), `encoding` ("raw" or "base64"),
         `point_data`, `cell_data` (mappings of names to arrays). ``.msh``: `binary` (default True).
-        ``.npz``: `compress`. The others have none.
+        ``.npz``: `compress`. ``.stl`` of a mesh of space: `binary` (default True). The others have
+        none.
 
     Raises
     ------
@@ -135,12 +142,13 @@ def read(path: str | os.PathLike[str]) -> Mesh:
 
 def _module(path: Path) -> ModuleType:
     suffix = path.suffix.lower()
-    if suffix in FORMATS:
-        return importlib.import_module(FORMATS[suffix])
+    known_formats = {**FORMATS, **SOLID_FORMATS}
+    if suffix in known_formats:
+        return importlib.import_module(known_formats[suffix])
     if suffix in _PICTURES:
         raise FileFormatError(f"{path}: {suffix} is a picture, not a mesh file; use csgmesh.draw")
     if not suffix:
-        raise FileFormatError(f"{path} has no suffix to tell its format; {near('', FORMATS)}")
-    hint, known = near(suffix, FORMATS), ", ".join(FORMATS)
+        raise FileFormatError(f"{path} has no suffix to tell its format; {near('', known_formats)}")
+    hint, known = near(suffix, known_formats), ", ".join(known_formats)
     said = f"; {hint}" if hint.startswith("did") else "."
     raise FileFormatError(f"{path}: unknown suffix {suffix!r}{said} Known are {known}")
