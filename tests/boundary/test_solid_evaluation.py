@@ -168,7 +168,6 @@ def test_feature_edges_are_where_surfaces_meet() -> None:
         ),
         (cm.Ball((0, 0, 0), 1) & cm.Ball((3, 0, 0), 1), cm.EmptyDomainError, "empty"),
         (cm.Extrude(cm.HalfSpace((0, 0), (1, 0)), 1), cm.UnboundedDomainError, "extrude"),
-        (cm.Regions({"a": BOX}), cm.ShapeError, "Regions in space"),
     ],
 )
 def test_what_cannot_be_evaluated(shape, error, message: str) -> None:

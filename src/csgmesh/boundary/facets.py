@@ -35,6 +35,8 @@ class Facets:
     surfaces : Surfaces
     parts : tuple of tuple of int
         Parts of the leaf that each surface belongs to.
+    around : int
+        Into how many pieces a full turn is cut; 0 for bodies that are not turned.
     """
 
     points: np.ndarray
@@ -42,6 +44,7 @@ class Facets:
     surface: np.ndarray
     surfaces: Surfaces
     parts: tuple[tuple[int, ...], ...]
+    around: int = 0
 
     def transformed(self, matrix: np.ndarray, offset: np.ndarray) -> Facets:
         """The image under ``x -> matrix @ x + offset``."""
@@ -52,6 +55,7 @@ class Facets:
             self.surface,
             self.surfaces.transformed(matrix, offset),
             self.parts,
+            self.around,
         )
 
 
@@ -70,11 +74,15 @@ class _Outline:
 
 
 def facets(
-    body: Revolution | Prism | Faceted, part_names: tuple[str, ...], deviation: float
+    body: Revolution | Prism | Faceted,
+    part_names: tuple[str, ...],
+    deviation: float,
+    around: int = 0,
 ) -> Facets:
     """Facets of a body, no further than `deviation` from its exact surfaces.
 
-    `part_names` are the leaf's own, by which the names of a swept shape find their parts.
+    `part_names` are the leaf's own, by which the names of a swept shape find their parts. A turn is
+    cut into `around` pieces at least.
     """
     if isinstance(body, Faceted):
         return _flat(body)
@@ -89,7 +97,7 @@ def facets(
     else:
         deviation = half
         outline = _of_shape(body.profile, part_names, deviation, is_turned=True)
-    return _turned(body, outline, deviation)
+    return _turned(body, outline, deviation, around)
 
 
 def _flat(body: Faceted) -> Facets:
@@ -196,7 +204,7 @@ def _prism(body: Prism, outline: _Outline) -> Facets:
         np.array([(0.0, 0.0, 0.0), (0.0, 0.0, body.height)]),
         np.array([(0.0, 0.0, -1.0), (0.0, 0.0, 1.0)]),
     )
-    walls = Surfaces.placed(EXTRUDED, outline.curves, np.eye(3), np.zeros(3))
+    walls = _walls(EXTRUDED, outline.curves)
     parts = ((0,), (1,), *outline.parts)
     if body.is_one_part:
         parts = ((0,),) * len(parts)
@@ -209,14 +217,14 @@ def _prism(body: Prism, outline: _Outline) -> Facets:
     ).transformed(body.matrix, body.offset)
 
 
-def _turned(body: Revolution, outline: _Outline, deviation: float) -> Facets:
+def _turned(body: Revolution, outline: _Outline, deviation: float, fewest: int) -> Facets:
     flat = np.concatenate(outline.loops)
     n = len(flat)
     is_full = body.angle >= 360.0
     radius = float(flat[:, 0].max())
     step = 2.0 * np.arccos(max(1.0 - deviation / radius, 0.0))
-    around = max(int(np.ceil(2.0 * np.pi / step)), _FEWEST_AROUND)
-    around = -(-around // 4) * 4
+    whole = max(int(np.ceil(2.0 * np.pi / step)), _FEWEST_AROUND, fewest)
+    around = whole = -(-whole // 4) * 4
     if not is_full:
         around = max(int(np.ceil(around * body.angle / 360.0)), 1)
     columns = around if is_full else around + 1
@@ -248,7 +256,7 @@ def _turned(body: Revolution, outline: _Outline, deviation: float) -> Facets:
     c, d = after[:, head].ravel(), this[:, head].ravel()
     triangles = np.concatenate([np.column_stack([a, b, c]), np.column_stack([a, c, d])])
     surface = np.tile(np.tile(source, around), 2)
-    walls = Surfaces.placed(REVOLVED, outline.curves, np.eye(3), np.zeros(3))
+    walls = _walls(REVOLVED, outline.curves)
     parts: tuple[tuple[int, ...], ...] = outline.parts
     if not is_full:
         cap = _triangulated(outline.loops)
@@ -261,8 +269,30 @@ def _turned(body: Revolution, outline: _Outline, deviation: float) -> Facets:
         parts = (*parts, (0,), (1,))
     real = (triangles != np.roll(triangles, 1, axis=1)).all(axis=1)
     return _compact(
-        Facets(grid.reshape(-1, 3), triangles[real], surface[real], walls, parts)
+        Facets(grid.reshape(-1, 3), triangles[real], surface[real], walls, parts, whole)
     ).transformed(body.matrix, body.offset)
+
+
+def _walls(kind: int, curves: Curves) -> Surfaces:
+    """What curves sweep along or around the z axis: planes where it is flat."""
+    out = Surfaces.placed(kind, curves, np.eye(3), np.zeros(3))
+    start, end = curves.starts(), curves.ends()
+    flat = curves.kind == LINE
+    along = end - start
+    if kind == REVOLVED:
+        flat &= along[:, 1] == 0.0
+        points = np.column_stack([np.zeros((len(start), 2)), start[:, 1]])
+        normals = np.column_stack([np.zeros((len(start), 2)), -np.sign(along[:, 0])])
+    else:
+        points = np.column_stack([start, np.zeros(len(start))])
+        normals = np.column_stack([along[:, 1], -along[:, 0], np.zeros(len(start))])
+    at = np.flatnonzero(flat)
+    if not len(at):
+        return out
+    table = Surfaces.concatenate([out, Surfaces.planes(points[at], normals[at])])
+    row = np.arange(len(out))
+    row[at] = len(out) + np.arange(len(at))
+    return table[row]
 
 
 def _successors(outline: _Outline) -> np.ndarray:
@@ -284,5 +314,10 @@ def _triangulated(loops: list[np.ndarray]) -> np.ndarray:
 def _compact(body: Facets) -> Facets:
     used, triangles = np.unique(body.triangles, return_inverse=True)
     return Facets(
-        body.points[used], triangles.reshape(-1, 3), body.surface, body.surfaces, body.parts
+        body.points[used],
+        triangles.reshape(-1, 3),
+        body.surface,
+        body.surfaces,
+        body.parts,
+        body.around,
     )

@@ -1,8 +1,10 @@
-"""Where pieces of a triangulated boundary touch: one vertex instead of two, no vertex on a facet.
+"""Where triangulated sheets touch: one vertex instead of two, no vertex or edge across a facet.
 
 A boolean engine returns closed manifolds. Pieces that touch come as separate vertices at the same
-place, as vertices inside another piece's edge or facet, and as flaps without thickness; none of
-these is a piecewise linear complex.
+place, as vertices inside another piece's edge or facet, and as flaps without thickness; bodies that
+share a face come with two triangulations of it. None of these is a piecewise linear complex.
+Afterwards no vertex lies on a foreign edge or facet, no two edges cross, and facets that overlap
+are equal: they have the same three vertices.
 """
 
 from __future__ import annotations
@@ -11,210 +13,333 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from csgmesh.boundary.neighbours import overlapping_pairs
+from csgmesh.boundary.overlay import coplanar_overlaps, overlaid
+from csgmesh.boundary.splitting import halved
 from csgmesh.errors import EvaluationError
-from csgmesh.spatial import Boxes, near_pairs
+from csgmesh.graphs import components
+from csgmesh.spatial import near_pairs
 
-#: Rounds of splitting after which touchings must be settled: each facet is split once a round.
-_ROUNDS = 50
+#: Rounds of splitting after which touchings must be settled: each edge is split once a round, near
+#: its middle if there is a choice.
+_ROUNDS = 60
 
 
 @dataclass(eq=False)
-class Surface:
-    """Points, triangles, what each triangle belongs to, and which points were moved how far."""
+class Sheets:
+    """Triangles, the surface each lies on, and the body whose boundary it belongs to.
+
+    Attributes
+    ----------
+    points : (n, 3) float64
+    triangles : (m, 3) int64
+    surface : (m,) int64
+    layer : (m,) int64
+        The body; -1 for what shall be cut and cut others but bounds nothing.
+    moved : list of (int, float)
+        Points that others of the same body were merged into, and over which distance.
+    """
 
     points: np.ndarray
     triangles: np.ndarray
     surface: np.ndarray
+    layer: np.ndarray
     moved: list[tuple[int, float]]
 
 
-def settle(points: np.ndarray, triangles: np.ndarray, surface: np.ndarray, snap: float) -> Surface:
-    """Merge what is closer than `snap`, split what is touched, remove what has no thickness.
+@dataclass(frozen=True, eq=False)
+class _Events:
+    """Edges (k, 2) with the vertices to split them at, facets with vertices inside them."""
+
+    edge: np.ndarray
+    vertex: np.ndarray
+    facet: np.ndarray
+    inner: np.ndarray
+    new_points: np.ndarray
+
+    def __bool__(self) -> bool:
+        return bool(len(self.edge) or len(self.facet))
+
+
+def settle(sheets: Sheets, snap: float) -> Sheets:
+    """Merge what is closer than `snap`, split what is touched or crossed.
 
     Raises
     ------
     EvaluationError
         If it does not come to an end; with the place.
     """
-    own = Surface(points, triangles, surface, [])
-    _merge_points(own, snap)
+    _merge_points(sheets, snap)
+    active = np.ones(len(sheets.triangles), bool)
     for _ in range(_ROUNDS):
-        events = _touched(own, snap)
-        _split(own, events)
-        _cancel_flaps(own)
-        if not events and not _unfold(own, snap):
-            return own
-    x, y, z = own.points[own.triangles[0, 0]] if not events else own.points[events[0][1]]
+        events, active = _touched(sheets, active, snap)
+        if not events:
+            _overlay(sheets, active, snap)
+            return sheets
+        vertex, merged = _with_new_points(sheets, events, active, snap)
+        triangles, parent = halved(
+            sheets.points, sheets.triangles, events.edge, vertex, events.facet, events.inner
+        )
+        sheets.triangles = merged[triangles] if merged is not None else triangles
+        sheets.surface, sheets.layer = sheets.surface[parent], sheets.layer[parent]
+        active = active[parent]
+        real = (sheets.triangles != np.roll(sheets.triangles, 1, axis=1)).all(axis=1)
+        _keep(sheets, real)
+        active = active[real]
+    x, y, z = sheets.points[vertex[0]] if len(vertex) else sheets.points[events.inner[0]]
     raise EvaluationError(f"pieces of the boundary touch without end near ({x}, {y}, {z})")
 
 
-def _merge_points(own: Surface, snap: float) -> None:
-    pairs = near_pairs(own.points, snap)
+def _overlay(sheets: Sheets, active: np.ndarray, snap: float) -> None:
+    """Divide facets that overlap alike; their vertices are settled."""
+    facet = np.flatnonzero(active)
+    corner = sheets.points[sheets.triangles[facet]]
+    pairs = coplanar_overlaps(corner, _near(sheets, facet, snap), snap)
     if not len(pairs):
         return
-    root = list(range(len(own.points)))
-
-    def find(v: int) -> int:
-        while root[v] != v:
-            root[v] = root[root[v]]
-            v = root[v]
-        return v
-
-    for a, b in pairs.tolist():
-        a, b = find(a), find(b)
-        root[max(a, b)] = min(a, b)
-    to = np.array([find(v) for v in range(len(root))])
-    for v in np.flatnonzero(to != np.arange(len(to))).tolist():
-        distance = float(np.sqrt(((own.points[v] - own.points[to[v]]) ** 2).sum()))
-        own.moved.append((int(to[v]), distance))
-    own.triangles = to[own.triangles]
-    _cancel_flaps(own)
+    new = overlaid(sheets.points, sheets.triangles[facet], _sheet(sheets)[facet], pairs, snap)
+    kept = np.ones(len(sheets.triangles), bool)
+    kept[facet[new.gone]] = False
+    parent = np.concatenate([np.flatnonzero(kept), facet[new.parent]])
+    sheets.triangles = np.concatenate([sheets.triangles[kept], new.triangles])
+    sheets.surface, sheets.layer = sheets.surface[parent], sheets.layer[parent]
 
 
-def _cancel_flaps(own: Surface) -> None:
-    """Drop triangles with a point twice, and pairs that lie back to back."""
-    t = own.triangles
-    real = (t != np.roll(t, 1, axis=1)).all(axis=1)
-    t, surface = t[real], own.surface[real]
-    rank = np.sort(t, axis=1)
-    # +1 for an even permutation of the sorted corners.
-    turn = np.where(
-        (t == rank).all(axis=1)
-        | (t == rank[:, [1, 2, 0]]).all(axis=1)
-        | (t == rank[:, [2, 0, 1]]).all(axis=1),
-        1,
-        -1,
+def _sheet(sheets: Sheets) -> np.ndarray:
+    """A number for each surface of each body, (m,)."""
+    return (sheets.layer + 1) * (int(sheets.surface.max()) + 1) + sheets.surface
+
+
+def _keep(sheets: Sheets, kept: np.ndarray) -> None:
+    if not kept.all():
+        sheets.triangles, sheets.surface = sheets.triangles[kept], sheets.surface[kept]
+        sheets.layer = sheets.layer[kept]
+
+
+def _merge_points(sheets: Sheets, snap: float) -> None:
+    pairs = near_pairs(sheets.points, snap)
+    if not len(pairs):
+        return
+    n = len(sheets.points)
+    to = _lowest(n, pairs)
+    body = np.full(n, -1)
+    body[sheets.triangles] = sheets.layer[:, None]
+    # Bodies that share a face have all its points twice: that is no news.
+    group = to * (int(body.max()) + 2) + body + 1
+    _, first, back = np.unique(group, return_index=True, return_inverse=True)
+    gone = np.flatnonzero((first[back.reshape(-1)] != np.arange(n)) & (body >= 0))
+    apart = np.sqrt(((sheets.points[gone] - sheets.points[to[gone]]) ** 2).sum(axis=1))
+    sheets.moved += zip(to[gone].tolist(), apart.tolist(), strict=True)
+    sheets.triangles = to[sheets.triangles]
+    _keep(sheets, (sheets.triangles != np.roll(sheets.triangles, 1, axis=1)).all(axis=1))
+
+
+def _lowest(n: int, pairs: np.ndarray) -> np.ndarray:
+    """For each of n points the lowest one it is connected with."""
+    _, label = components(n, pairs[:, 0], pairs[:, 1])
+    _, first = np.unique(label, return_index=True)
+    return first[label]
+
+
+def _with_new_points(
+    sheets: Sheets, events: _Events, active: np.ndarray, snap: float
+) -> tuple[np.ndarray, np.ndarray | None]:
+    """Append the points where edges cross, merged with what is there; the events' vertices."""
+    n, k = len(sheets.points), len(events.new_points)
+    if not k:
+        return events.vertex, None
+    sheets.points = np.concatenate([sheets.points, events.new_points])
+    near = np.append(np.unique(sheets.triangles[active]), n + np.arange(k))
+    pairs = near_pairs(sheets.points[near], snap)
+    if not len(pairs):
+        return events.vertex, None
+    to = _lowest(n + k, near[pairs])
+    return to[events.vertex], to
+
+
+def _touched(sheets: Sheets, active: np.ndarray, snap: float) -> tuple[_Events, np.ndarray]:
+    """Touchings among the active facets, and the facets that are involved in any."""
+    points, n = sheets.points, len(sheets.points)
+    facet = np.flatnonzero(active)
+    triangles = sheets.triangles[facet]
+    pairs = _near(sheets, facet, snap)
+    involved = np.zeros(len(active), bool)
+    involved[facet[pairs.ravel()]] = True
+    at, vertex = _meetings(triangles, pairs, n)
+    edge, share, on, inside = _points_on(points, triangles, at, vertex, snap)
+    caps = _caps(points, triangles, n, snap)
+    involved[facet[caps[3]]] = True
+    diagonal = _diagonals(points, triangles, _sheet(sheets)[facet], snap)
+    one, two, share_one, share_two, places = _crossings(points, triangles, pairs, diagonal, snap)
+    new = n + np.arange(len(places))
+    edges = np.concatenate([edge, caps[0], one, two])
+    shares = np.concatenate([share, caps[1], share_one, share_two])
+    vertices = np.concatenate([vertex[on], caps[2], new, new])
+    order = np.lexsort((vertices, np.abs(shares - 0.5).round(6), edges))
+    first = order[np.r_[True, edges[order][1:] != edges[order][:-1]][: len(order)]]
+    chosen = np.unique(vertices[first])
+    used = chosen[chosen >= n]
+    renumbered = np.arange(n + len(places))
+    renumbered[used] = n + np.arange(len(used))
+    inner_facet, inner = facet[at[inside]], vertex[inside]
+    middle = points[sheets.triangles[inner_facet]].mean(axis=1)
+    off = ((points[inner] - middle) ** 2).sum(axis=1)
+    order = np.lexsort((inner, off, inner_facet))
+    lone = order[np.r_[True, np.diff(inner_facet[order]) != 0][: len(order)]]
+    events = _Events(
+        np.column_stack([edges[first] // n, edges[first] % n]),
+        renumbered[vertices[first]],
+        inner_facet[lone],
+        inner[lone],
+        places[used - n],
     )
-    order = np.lexsort((turn, *rank.T[::-1]))
-    r, s = rank[order], turn[order]
-    back = np.flatnonzero((r[1:] == r[:-1]).all(axis=1) & (s[1:] != s[:-1]))
-    gone = np.zeros(len(t), bool)
-    for k in back.tolist():
-        if not gone[order[k]]:
-            gone[order[k]] = gone[order[k + 1]] = True
-    own.triangles, own.surface = t[~gone], surface[~gone]
+    return events, involved
 
 
-def _touched(own: Surface, snap: float) -> list[tuple[int, int, int, float]]:
-    """Facets with a point on them that is none of their corners: (facet, point, edge or -1, share).
+def _near(sheets: Sheets, facet: np.ndarray, snap: float) -> np.ndarray:
+    """Pairs of facets of different sheets that no plane of either keeps apart, (k, 2)."""
+    corner = sheets.points[sheets.triangles[facet]]
+    pairs = overlapping_pairs(
+        corner.min(axis=1) - snap, corner.max(axis=1) + snap, _sheet(sheets)[facet]
+    )
+    for a, b in ((0, 1), (1, 0)):
+        p, q = corner[pairs[:, a]], corner[pairs[:, b]]
+        normal = np.cross(p[:, 1] - p[:, 0], p[:, 2] - p[:, 0])
+        height = np.einsum("kij,kj->ki", q - p[:, :1], normal)
+        reach = snap * np.sqrt((normal * normal).sum(axis=1))[:, None]
+        meets = (height <= reach).any(axis=1) & (height >= -reach).any(axis=1)
+        # Neighbours along an edge only touch there, unless they fold back.
+        own, other = sheets.triangles[facet[pairs[:, a]]], sheets.triangles[facet[pairs[:, b]]]
+        shared = (own[:, :, None] == other[:, None, :]).any(axis=1)
+        beside = (shared.sum(axis=1) == 2) & ((np.abs(height) > reach) & ~shared).any(axis=1)
+        pairs = pairs[meets & ~beside]
+    return pairs
 
-    A facet is listed once, an edge by the lowest of its points for all facets around it.
-    """
-    corner = own.points[own.triangles]
-    low, high = corner.min(axis=1) - snap, corner.max(axis=1) + snap
-    used = np.unique(own.triangles)
-    place = own.points[used]
-    found = Boxes(low[:, :2], high[:, :2]).overlapping(place[:, :2], place[:, :2])
-    at, facet = found.T
-    height = place[at, 2]
-    near = (height >= low[facet, 2]) & (height <= high[facet, 2])
-    at, facet = at[near], facet[near]
-    vertex = used[at]
-    foreign = (own.triangles[facet] != vertex[:, None]).all(axis=1)
-    at, facet, vertex = at[foreign], facet[foreign], vertex[foreign]
-    p, c = own.points[vertex], corner[facet]
-    on_edge = np.full(len(facet), -1)
-    share = np.zeros(len(facet))
+
+def _meetings(triangles: np.ndarray, pairs: np.ndarray, n: int) -> tuple[np.ndarray, np.ndarray]:
+    """Facets and corners of the other facets of their pairs, each once."""
+    key = np.concatenate(
+        [pairs[:, a, None] * n + triangles[pairs[:, 1 - a]] for a in (0, 1)]
+    ).ravel()
+    key = np.unique(key)
+    facet, vertex = key // n, key % n
+    foreign = (triangles[facet] != vertex[:, None]).all(axis=1)
+    return facet[foreign], vertex[foreign]
+
+
+def _points_on(
+    points: np.ndarray, triangles: np.ndarray, facet: np.ndarray, vertex: np.ndarray, snap: float
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """Edges that vertices lie on, where, which rows these are; and which lie inside facets."""
+    n, p, c = len(points), points[vertex], points[triangles[facet]]
+    edge, share = np.full(len(facet), -1), np.zeros(len(facet))
     for k in range(3):
-        a, d = c[:, k], c[:, (k + 1) % 3] - c[:, k]
-        along = ((p - a) * d).sum(axis=1) / (d * d).sum(axis=1)
-        off = p - a - along[:, None] * d
-        hit = ((off * off).sum(axis=1) <= snap * snap) & (along > 0.0) & (along < 1.0)
-        on_edge = np.where(hit & (on_edge < 0), k, on_edge)
-        share = np.where(hit & (on_edge == k), along, share)
-    inside = (on_edge < 0) & _is_inside(p, c, snap)
-    kept = np.flatnonzero((on_edge >= 0) | inside)
-    rows = zip(
-        facet[kept].tolist(), vertex[kept].tolist(), on_edge[kept].tolist(), share[kept].tolist(),
-        strict=True,
-    )  # fmt: skip
-    return _one_an_edge(own.triangles, sorted(rows))
-
-
-def _is_inside(p: np.ndarray, c: np.ndarray, snap: float) -> np.ndarray:
-    """Which points lie on the plane of a triangle, within it."""
+        tail, head = triangles[facet, k], triangles[facet, (k + 1) % 3]
+        low, high = np.minimum(tail, head), np.maximum(tail, head)
+        along, off = _along(p, points[low], points[high])
+        hit = (edge < 0) & (off <= snap) & (along > 0.0) & (along < 1.0)
+        edge = np.where(hit, low * n + high, edge)
+        share = np.where(hit, along, share)
     normal = np.cross(c[:, 1] - c[:, 0], c[:, 2] - c[:, 0])
     size = np.sqrt((normal * normal).sum(axis=1))
-    result = np.abs(((p - c[:, 0]) * normal).sum(axis=1)) <= snap * size
+    inside = (edge < 0) & (np.abs(((p - c[:, 0]) * normal).sum(axis=1)) <= snap * size)
     for k in range(3):
         d = c[:, (k + 1) % 3] - c[:, k]
-        result &= (np.cross(d, p - c[:, k]) * normal).sum(axis=1) > 0.0
-    return result & (size > 0.0)
+        inside &= (np.cross(d, p - c[:, k]) * normal).sum(axis=1) > 0.0
+    on = np.flatnonzero(edge >= 0)
+    return edge[on], share[on], on, np.flatnonzero(inside & (size > 0.0))
 
 
-def _one_an_edge(
-    triangles: np.ndarray, rows: list[tuple[int, int, int, float]]
-) -> list[tuple[int, int, int, float]]:
-    """Choose points to split by so that all facets around an edge are split by the same one."""
-    chosen: dict[tuple[int, int], int] = {}
-    for facet, vertex, edge, _ in rows:
-        if edge >= 0:
-            chosen.setdefault(_edge(triangles, facet, edge), vertex)
-    busy: set[int] = set()
-    out = []
-    for row in sorted(rows, key=lambda r: r[2] < 0):
-        facet, vertex, edge, _ = row
-        if facet in busy or (edge >= 0 and chosen[_edge(triangles, facet, edge)] != vertex):
-            continue
-        busy.add(facet)
-        out.append(row)
-    return out
+def _along(p: np.ndarray, a: np.ndarray, b: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Where along the line from a to b the point nearest to p is, and its distance."""
+    d = b - a
+    along = ((p - a) * d).sum(axis=1) / np.maximum((d * d).sum(axis=1), 1e-300)
+    off = p - a - along[:, None] * d
+    return along, np.sqrt((off * off).sum(axis=1))
 
 
-def _edge(triangles: np.ndarray, facet: int, edge: int) -> tuple[int, int]:
-    a, b = int(triangles[facet, edge]), int(triangles[facet, (edge + 1) % 3])
-    return min(a, b), max(a, b)
+def _caps(
+    points: np.ndarray, triangles: np.ndarray, n: int, snap: float
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """Facets with a corner on the opposite edge: edge, share, corner, facet."""
+    found = []
+    for k in range(3):
+        tail, head = triangles[:, k], triangles[:, (k + 1) % 3]
+        low, high, tip = np.minimum(tail, head), np.maximum(tail, head), triangles[:, (k + 2) % 3]
+        along, off = _along(points[tip], points[low], points[high])
+        at = np.flatnonzero((off <= snap) & (along > 0.0) & (along < 1.0))
+        found.append((low[at] * n + high[at], along[at], tip[at], at))
+    edge, share, vertex, facet = (np.concatenate(parts) for parts in zip(*found, strict=True))
+    return edge, share, vertex, facet
 
 
-def _unfold(own: Surface, snap: float) -> int:
-    """Turn edges at which two facets lie back to back, and drop what then cancels; their number.
-
-    Two facets folded onto each other are half of a tetrahedron without volume. Its other half takes
-    their place, with less area, and at last lies back to back with its neighbours.
-    """
-    t = own.triangles
-    edges = t[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2)
-    key = edges.min(axis=1) * len(own.points) + edges.max(axis=1)
-    order = np.argsort(key, kind="stable")
-    same = np.r_[False, np.diff(key[order]) == 0, False]
+def _diagonals(
+    points: np.ndarray, triangles: np.ndarray, sheet: np.ndarray, snap: float
+) -> np.ndarray:
+    """Edges inside flat parts of a sheet, as increasing numbers ``low * n + high``."""
+    n = len(points)
+    head = np.roll(triangles, -1, axis=1)
+    key = (np.minimum(triangles, head) * n + np.maximum(triangles, head)).ravel()
+    of_sheet = np.repeat(sheet, 3)
+    order = np.lexsort((of_sheet, key))
+    k, s = key[order], of_sheet[order]
+    same = np.r_[False, (k[1:] == k[:-1]) & (s[1:] == s[:-1]), False]
     pair = np.flatnonzero(same[1:-1] & ~same[:-2] & ~same[2:])
     one, two = order[pair], order[pair + 1]
-    a, b = edges[one].T
-    c, d = t.ravel()[_opposite(one)], t.ravel()[_opposite(two)]
-    x, y, z = (own.points[v] - own.points[a] for v in (b, c, d))
-    normal = np.cross(x, y)
+    corner = points[triangles]
+    normal = np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0])
     size = np.sqrt((normal * normal).sum(axis=1))
-    flat = (np.abs((z * normal).sum(axis=1)) <= snap * size) & (size > 0.0)
-    folded = np.flatnonzero(flat & ((np.cross(x, z) * normal).sum(axis=1) > 0.0) & (c != d))
-    busy = np.zeros(len(t), bool)
-    n_turned = 0
-    for k in folded.tolist():
-        first, second = int(one[k]) // 3, int(two[k]) // 3
-        if busy[first] or busy[second]:
-            continue
-        busy[first] = busy[second] = True
-        t[first], t[second] = (a[k], d[k], c[k]), (d[k], b[k], c[k])
-        n_turned += 1
-    _cancel_flaps(own)
-    return n_turned
+    level = np.ones(len(pair), bool)
+    for a, b in ((one, two), (two, one)):
+        tip = points[triangles.ravel()[b - b % 3 + (b + 2) % 3]]
+        height = ((tip - corner[a // 3, 0]) * normal[a // 3]).sum(axis=1)
+        level &= np.abs(height) <= 2.0 * snap * size[a // 3]
+    return key[one[level]]
 
 
-def _opposite(half_edge: np.ndarray) -> np.ndarray:
-    """Where the corner opposite each of a triangle's edges stands."""
-    return half_edge - half_edge % 3 + (half_edge + 2) % 3
-
-
-def _split(own: Surface, events: list[tuple[int, int, int, float]]) -> None:
-    if not events:
-        return
-    new, surface = [], []
-    gone = np.zeros(len(own.triangles), bool)
-    for facet, vertex, edge, _ in events:
-        gone[facet] = True
-        corners = own.triangles[facet].tolist()
-        for k in range(3):
-            if k != edge:
-                new.append((corners[k], corners[(k + 1) % 3], vertex))
-                surface.append(own.surface[facet])
-    own.triangles = np.concatenate([own.triangles[~gone], np.array(new, np.int64).reshape(-1, 3)])
-    own.surface = np.concatenate([own.surface[~gone], np.array(surface, np.int64)])
+def _crossings(
+    points: np.ndarray, triangles: np.ndarray, pairs: np.ndarray, diagonal: np.ndarray, snap: float
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """Pairs of edges, no diagonals, that cross: both edges, where along each, and the place."""
+    n, tail = len(points), triangles
+    head = np.roll(triangles, -1, axis=1)
+    edge = np.minimum(tail, head) * n + np.maximum(tail, head)
+    names, number = np.unique(edge, return_inverse=True)
+    number = number.reshape(-1, 3)
+    one = np.repeat(number[pairs[:, 0]], 3, axis=1).ravel()
+    two = np.tile(number[pairs[:, 1]], (1, 3)).ravel()
+    k = len(names)
+    key = np.unique(np.minimum(one, two) * k + np.maximum(one, two))
+    one, two = key // k, key % k
+    bounds = ~np.isin(names, diagonal)
+    bounding = bounds[one] & bounds[two]
+    one, two = one[bounding], two[bounding]
+    ends = np.stack([names // n, names % n], axis=1)
+    a, b = ends[one], ends[two]
+    apart = (a[:, :, None] != b[:, None, :]).all(axis=(1, 2))
+    one, two, a, b = one[apart], two[apart], a[apart], b[apart]
+    p, q = points[a[:, 0]], points[b[:, 0]]
+    u, v = points[a[:, 1]] - p, points[b[:, 1]] - q
+    normal = np.cross(u, v)
+    square = (normal * normal).sum(axis=1)
+    close = np.abs(((q - p) * normal).sum(axis=1)) <= snap * np.sqrt(square)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        s = (np.cross(q - p, v) * normal).sum(axis=1) / square
+        t = (np.cross(q - p, u) * normal).sum(axis=1) / square
+    hit = close & (s > 0.0) & (s < 1.0) & (t > 0.0) & (t < 1.0)
+    one, two, a, b, s, t = one[hit], two[hit], a[hit], b[hit], s[hit], t[hit]
+    # Where an end lies on the other edge, that end is the place to split at.
+    clear = np.ones(len(one), bool)
+    for x, y in ((a, b), (b, a)):
+        for end in (0, 1):
+            along, off = _along(points[x[:, end]], points[y[:, 0]], points[y[:, 1]])
+            clear &= (off > snap) | (along <= 0.0) | (along >= 1.0)
+            for other in (0, 1):
+                gap = points[x[:, end]] - points[y[:, other]]
+                clear &= (gap * gap).sum(axis=1) > snap * snap
+    one, two, a, b, s, t = one[clear], two[clear], a[clear], b[clear], s[clear], t[clear]
+    place = 0.5 * (
+        points[a[:, 0]] + s[:, None] * (points[a[:, 1]] - points[a[:, 0]])
+        + points[b[:, 0]] + t[:, None] * (points[b[:, 1]] - points[b[:, 0]])
+    )  # fmt: skip
+    return names[one], names[two], s, t, place
