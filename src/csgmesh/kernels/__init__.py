@@ -102,6 +102,7 @@ _HOME = {
     "vertex_homes": "tetrahedra.stars",
     "find_faces": "tetrahedra.stars",
     "flood_space": "tetrahedra.regions",
+    "tetra_components": "tetrahedra.components",
     "mark_edges": "tetrahedra.recovery",
     "recover_triangles": "tetrahedra.recovery",
     "find_containing": "tetrahedra.locating",

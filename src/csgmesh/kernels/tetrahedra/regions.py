@@ -24,11 +24,14 @@ def put(region, stack, n, t, wanted):
 
 
 @njit(**ENTRY)
-def flood_space(points, verts, neis, walls, triangles, faces, sides, regions, stack_, n_tets):
+def flood_space(
+    points, verts, neis, walls, triangles, faces, stops, sides, regions, stack_, n_tets
+):
     """Regions of all tetrahedra from what lies behind and in front of each wall.
 
     walls[h]: whether face h is one. faces[i]: where triangle i is; sides (k, 2) what lies behind
-    and in front of it. Ghosts lie outside. Returns -1, or a triangle at which regions disagree,
+    and in front of it. stops: more walls, which say nothing. Ghosts lie outside; -2 stays where
+    no triangle leads. Returns -1, or a triangle at which regions disagree,
     or -2 - t for a tetrahedron that is reached from two regions.
     """
     xyz = pointer(points)
@@ -37,6 +40,7 @@ def flood_space(points, verts, neis, walls, triangles, faces, sides, regions, st
     wall = pointer(walls)
     corner = pointer(triangles)
     face = pointer(faces)
+    stop = pointer(stops)
     side = pointer(sides)
     region = pointer(regions)
     stack = pointer(stack_)
@@ -48,6 +52,9 @@ def flood_space(points, verts, neis, walls, triangles, faces, sides, regions, st
     for i in range(faces.shape[0]):
         wall[face[i]] = 1
         wall[nei[face[i]]] = 1
+    for i in range(stops.shape[0]):
+        wall[stop[i]] = 1
+        wall[nei[stop[i]]] = 1
     for i in range(faces.shape[0]):
         for turn in range(2):
             h = face[i] if turn == 0 else nei[face[i]]

@@ -102,7 +102,10 @@ class Net:
         return self._homes
 
     def recover(self, triangles: np.ndarray, missing: np.ndarray) -> int:
-        """Flip until missing triangles (k,) of a surface (m, 3) are faces; how many were done."""
+        """Flip until missing ones (k,) of triangles (m, 3) are faces; how many were done.
+
+        No triangle that is a face already ceases to be one.
+        """
         corners = self.rank[triangles]
         edges = np.ascontiguousarray(corners[:, [0, 1, 1, 2, 2, 0]]).reshape(-1)
         stays = np.full(4 << len(edges).bit_length(), -1, np.int64)
@@ -146,25 +149,44 @@ class Net:
         self.counts[8] = counts[1]
         return out
 
-    def flood(self, triangles: np.ndarray, sides: np.ndarray) -> tuple[np.ndarray, int]:
-        """Region of each slot inside the walls that triangles are, and what the kernel says."""
+    def flood(
+        self, triangles: np.ndarray, sides: np.ndarray, stops: np.ndarray
+    ) -> tuple[np.ndarray, int]:
+        """Region of each slot, -2 where no triangle leads, and what the kernel says.
+
+        Parameters
+        ----------
+        triangles : (m, 3) int64
+            Walls, all of them faces.
+        sides : (m, 2) int64
+            Regions behind and in front of each.
+        stops : (f,) int64
+            Faces that are walls, too.
+        """
         n = self.n_slots
         region, stack = np.empty(n, np.int32), np.empty(n, np.int32)
         wall = np.empty(4 * n, np.uint8)
-        faces = self.faces(triangles)
         status = kernels.flood_space(
             self.xyz,
             self.vert,
             self.nei,
             wall,
             self.rank[triangles].reshape(-1),
-            faces,
+            self.faces(triangles),
+            stops,
             np.ascontiguousarray(sides, np.int64).reshape(-1),
             region,
             stack,
             n,
         )
         return region, int(status)
+
+    def across(self, triangles: np.ndarray, faces: np.ndarray) -> np.ndarray:
+        """Corner that sees each triangle (k, 3), a face, from its front, (k,) int64."""
+        other = self.nei[faces].astype(np.int64)
+        corners = np.column_stack([self.rank[triangles], self.vert[faces]])
+        is_front = kernels.tetra_orientations(self.xyz.reshape(-1, 3), corners) > 0
+        return np.where(is_front, faces, other)
 
     def cells(self) -> tuple[np.ndarray, np.ndarray]:
         """Tetrahedra (m, 4) of all slots in numbers of the points, and which of them are any."""
