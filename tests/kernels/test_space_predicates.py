@@ -58,6 +58,13 @@ def an_ulp_apart(rng: np.random.Generator) -> np.ndarray:
     return 0.5 + rng.integers(0, 4, (5, 3)) * 2.0**-53
 
 
+def on_corners_of_a_box(rng: np.random.Generator) -> np.ndarray:
+    low, high = rng.random((2, 3))
+    points = np.where(rng.integers(0, 2, (5, 3)), high, low)
+    points[rng.integers(0, 8) % 5] = rng.random(3)
+    return points if rng.random() < 0.5 else np.where(rng.integers(0, 2, (5, 3)), high, low)
+
+
 def in_a_plane(rng: np.random.Generator) -> np.ndarray:
     return rng.random(3) + rng.random((5, 2)) @ rng.random((2, 3))
 
@@ -80,6 +87,7 @@ def of_many_magnitudes(rng: np.random.Generator) -> np.ndarray:
         on_a_scaled_lattice,
         on_a_large_lattice,
         an_ulp_apart,
+        on_corners_of_a_box,
         in_a_plane,
         far_from_the_origin,
         of_many_magnitudes,

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -52,7 +54,9 @@ def face_counts(cells: Tetrahedra) -> dict[tuple[int, ...], int]:
     return dict(zip(map(tuple, unique.tolist()), counts.tolist(), strict=True))
 
 
-def assert_conforming(cells: Tetrahedra, surface: SurfaceMesh) -> None:
+def assert_conforming(
+    cells: Tetrahedra, surface: SurfaceMesh, wanted_volumes: np.ndarray | None = None
+) -> None:
     assert not len(cells.missing)
     assert (kernels.tetra_orientations(cells.points, cells.tets) > 0).all()
     counts = face_counts(cells)
@@ -62,7 +66,9 @@ def assert_conforming(cells: Tetrahedra, surface: SurfaceMesh) -> None:
     walls = [tuple(sorted(t)) for t in cells.triangles.tolist()]
     assert [counts.get(t, 0) for t in walls] == wanted
     assert sum(count == 1 for count in counts.values()) == int(outer.sum())
-    assert volumes(cells) == pytest.approx(surface.plc.volumes(), rel=1e-12)
+    if wanted_volumes is None:
+        wanted_volumes = surface.plc.volumes()
+    assert volumes(cells) == pytest.approx(wanted_volumes, rel=1e-12)
 
 
 @pytest.mark.parametrize("name", SOLIDS)
@@ -80,6 +86,66 @@ def test_points_inside_become_vertices() -> None:
     assert (np.unique(cells.tets) == np.arange(len(cells.points))).all()
     others = np.random.default_rng(4).integers(0, len(cells.points), len(cells.tets))
     assert (kernels.in_spheres(cells.points, cells.tets, others) <= 0).all()
+
+
+def lattice(n: int, low: np.ndarray, side: float) -> tuple[np.ndarray, np.ndarray]:
+    """Corners and centres of n cubes along each axis, and the tetrahedra between two centres."""
+    corner = np.indices((n + 1,) * 3).reshape(3, -1).T
+    centre = np.indices((n,) * 3).reshape(3, -1).T
+    tets = []
+    for axis in range(3):
+        one = centre[centre[:, axis] < n - 1]
+        two = one + np.eye(3, dtype=int)[axis]
+        u, v = np.eye(3, dtype=int)[[(axis + 1) % 3, (axis + 2) % 3]]
+        square = [row @ [(n + 1) ** 2, n + 1, 1] for row in (two, two + u, two + u + v, two + v)]
+        ends = [row @ [n**2, n, 1] + (n + 1) ** 3 for row in (one, two)]
+        tets += [np.column_stack([square[k - 1], square[k], *ends]) for k in range(4)]
+    points, rows = np.vstack([corner, centre + 0.5]) * side + low, np.vstack(tets)
+    inverted = kernels.tetra_orientations(points, rows) < 0
+    rows[inverted] = rows[inverted][:, [1, 0, 2, 3]]
+    return points, rows
+
+
+@pytest.mark.parametrize(("gap", "share"), [(0.12, 1.0), (0.02, 0.1)])
+def test_lattice_tetrahedra_are_kept_where_they_are_delaunay(gap: float, share: float) -> None:
+    surface = surface_of(cm.evaluate(CUBE), 0.2)
+    inner, kept = lattice(6, np.full(3, gap), (1 - 2 * gap) / 6)
+    cells = tetrahedralize(surface, inner, kept)
+    assert_conforming(cells, surface)
+    assert (np.unique(cells.tets) == np.arange(len(cells.points))).all()
+    rows = {tuple(t) for t in np.sort(cells.tets, axis=1).tolist()}
+    is_there = [tuple(sorted(t)) in rows for t in (kept + surface.n_points).tolist()]
+    assert np.mean(is_there) >= share
+    for k in range(3):
+        others = np.random.default_rng(k).integers(0, len(cells.points), len(cells.tets))
+        assert (kernels.in_spheres(cells.points, cells.tets, others) <= 0).all()
+
+
+def nested(outer: SurfaceMesh, core: SurfaceMesh) -> SurfaceMesh:
+    """One solid within another one, as two regions."""
+    n, f = outer.n_points, len(outer.face_region)
+    return replace(
+        outer,
+        points=np.vstack([outer.points, core.points]),
+        triangles=np.vstack([outer.triangles, core.triangles + n]),
+        face=np.append(outer.face, core.face + f),
+        face_region=np.vstack([outer.face_region, np.tile([1, 0], (len(core.face_region), 1))]),
+        segments=np.vstack([outer.segments, core.segments + n]),
+    )
+
+
+@pytest.mark.parametrize("keeps", [False, True])
+def test_tetrahedra_take_the_region_around_them(keeps: bool) -> None:
+    core = surface_of(cm.evaluate(cm.Ball((0, 0, 0), 1)), 0.3)
+    surface = nested(
+        surface_of(cm.evaluate(cm.Box((-1.5, -1.5, -1.5), (3.5, 1.5, 1.5))), 0.4), core
+    )
+    one, kept = lattice(5, np.full(3, -0.5), 0.2)
+    inner = np.vstack([one, one + np.array([2.3, 0, 0])])
+    kept = np.vstack([kept, kept + len(one)])
+    cells = tetrahedralize(surface, inner, kept if keeps else None)
+    ball = core.plc.volumes()[0]
+    assert_conforming(cells, surface, np.array([45.0 - ball, ball]))
 
 
 def test_equal_points_are_an_error_with_their_place() -> None:

@@ -1,10 +1,11 @@
 """What is left of orientation and in-sphere tests when a filter cannot tell; exact signs.
 
-Three stages, each entered only when the one before cannot tell: small multiples of a power of two,
-for which plain arithmetic rounds nothing (grids and lattices); about 32 digits with a bound of
-their error; determinants of the coordinates themselves as expansions, after J. R. Shewchuk,
-"Adaptive precision floating-point arithmetic and fast robust geometric predicates", Discrete &
-Computational Geometry 18 (1997).
+Stages, each entered only when the one before cannot tell: corners of boxes and rectangles parallel
+to the axes; small multiples of a power of two, for which plain arithmetic rounds nothing; about 32
+digits with a bound of their error; larger multiples, whose determinant is zero or above it;
+determinants of the coordinates themselves as expansions, after J. R. Shewchuk, "Adaptive precision
+floating-point arithmetic and fast robust geometric predicates", Discrete & Computational Geometry
+18 (1997).
 
 Both functions are compiled once and called by name from the machine code of every other kernel.
 """
@@ -13,6 +14,7 @@ from __future__ import annotations
 
 from numba import njit
 
+from ..exact import are_rectangle
 from ..expansions import add_expansions, cross, diff_tail, scale_expansion
 from ..pointers import HELPER, scratch
 from .doubled import add, minor, multiply, sum_of_products
@@ -23,20 +25,23 @@ from .linking import name_function
 DOUBLED = 2.0**-97
 #: 1.5 * 2^52: adding it to a number and taking it away rounds the number to an integer.
 ROUNDING = 6755399441055744.0
+#: Determinants of degree five of multiples of one 2^9th of the largest fit into 52 bits: plain
+#: arithmetic rounds nothing.
+FEW = 2.0**9
+#: Those of one 2^17th are multiples of 2^-85 of its fifth power, of which their permanent is at
+#: most 72: if they are smaller than the error of 32 digits, they are zero.
+MANY = 2.0**17
 
 
 @njit(**HELPER)
-def are_small_multiples(x, n, largest):
-    """Whether n doubles are multiples of a 2^-9th of the power of two above the largest.
-
-    A determinant of degree five of such numbers fits into 52 bits.
-    """
+def are_multiples(x, n, largest, parts):
+    """Whether n doubles are multiples of one in `parts` of a power of two not below the largest."""
     unit = 2.0**-40
-    while unit * 512.0 < largest:
+    while unit < largest:
         unit *= 2.0
-    while unit * 256.0 >= largest and unit > 1e-300:
+    while unit * 0.5 >= largest and unit > 1e-280:
         unit *= 0.5
-    magic = ROUNDING * unit
+    magic = ROUNDING * (unit / parts)
     rest = 0.0
     for i in range(n):
         rest += abs(((x[i] + magic) - magic) - x[i])
@@ -139,15 +144,51 @@ def orient3d_adaptive(ax, ay, az, bx, by, bz, cx, cy, cz, dx, dy, dz):
     t = scratch(9)
     largest = take_differences(x, y, z, 3, d, t)
     det, size = determinant(d, 0, 1, 2)
-    if largest >= 0.0 and (size == 0.0 or are_small_multiples(d, 9, largest)):
+    if largest >= 0.0 and (size == 0.0 or are_multiples(d, 9, largest, FEW)):
         return det
     det, _ = long_determinant(d, t, 0, 1, 2)
     if abs(det) > DOUBLED * size:
         return det
+    if largest >= 0.0 and are_multiples(d, 9, largest, MANY):
+        return 0.0
     h = scratch(96)
     spare = scratch(96)
     n = exact_volume(x, y, z, 3, 0, 1, 2, h, spare)
     return h[n - 1] if n > 0 else 0.0
+
+
+@njit(**HELPER)
+def is_rectangle(u, v, w, i, j, k):
+    """Whether three points and the last are a rectangle parallel to u and v."""
+    return (
+        w[i] == w[4]
+        and w[j] == w[4]
+        and w[k] == w[4]
+        and are_rectangle(u[i], v[i], u[j], v[j], u[k], v[k], u[4], v[4])
+    )
+
+
+@njit(**HELPER)
+def are_on_box(x, y, z):
+    """Whether five points are corners of one box parallel to the axes, or the last one and three
+    others of a rectangle: the commonest points on a sphere.
+    """
+    for k in range(4):
+        i = 1 if k == 0 else 0
+        j = 2 if k <= 1 else 1
+        m = 3 if k <= 2 else 2
+        if is_rectangle(x, y, z, i, j, m) or is_rectangle(y, z, x, i, j, m):
+            return True
+        if is_rectangle(z, x, y, i, j, m):
+            return True
+    for axis in range(3):
+        c = x if axis == 0 else (y if axis == 1 else z)
+        low = min(min(c[0], c[1]), min(c[2], c[3]))
+        high = max(max(c[0], c[1]), max(c[2], c[3]))
+        for i in range(5):
+            if c[i] != low and c[i] != high:
+                return False
+    return True
 
 
 @njit(**HELPER)
@@ -194,6 +235,8 @@ def insphere_adaptive(ax, ay, az, bx, by, bz, cx, cy, cz, dx, dy, dz, ex, ey, ez
     x[2], y[2], z[2] = cx, cy, cz
     x[3], y[3], z[3] = dx, dy, dz
     x[4], y[4], z[4] = ex, ey, ez
+    if are_on_box(x, y, z):
+        return 0.0
     d = scratch(12)
     t = scratch(12)
     largest = take_differences(x, y, z, 4, d, t)
@@ -204,7 +247,7 @@ def insphere_adaptive(ax, ay, az, bx, by, bz, cx, cy, cz, dx, dy, dz, ex, ey, ez
         lift = d[3 * i] * d[3 * i] + d[3 * i + 1] * d[3 * i + 1] + d[3 * i + 2] * d[3 * i + 2]
         det += lift * (-volume if i & 1 else volume)
         size += lift * share
-    if largest >= 0.0 and (size == 0.0 or are_small_multiples(d, 12, largest)):
+    if largest >= 0.0 and (size == 0.0 or are_multiples(d, 12, largest, FEW)):
         return det
     det = 0.0
     low = 0.0
@@ -234,6 +277,8 @@ def insphere_adaptive(ax, ay, az, bx, by, bz, cx, cy, cz, dx, dy, dz, ex, ey, ez
             det, low = add(det, low, term, term_low)
     if abs(det) > DOUBLED * size:
         return det
+    if largest >= 0.0 and are_multiples(d, 12, largest, MANY):
+        return 0.0
     return exact_insphere(x, y, z)
 
 

@@ -195,8 +195,13 @@ class Net:
 
 
 def _box(points: np.ndarray) -> np.ndarray:
-    """Eight corners of a box far around points."""
+    """Eight corners of a box far around points.
+
+    Their coordinates are small multiples of a power of two, as those of many points are: exact
+    zeros are found sooner among such.
+    """
     low, high = points.min(axis=0), points.max(axis=0)
     reach = _FAR * float(np.sqrt(((high - low) ** 2).sum()))
-    corners = np.array([[i & 1, i >> 1 & 1, i >> 2] for i in range(8)], float)
-    return np.asarray(low - reach + corners * (high - low + 2.0 * reach))
+    unit = 2.0 ** (np.frexp(reach)[1] - 6)
+    low, high = np.floor((low - reach) / unit), np.ceil((high + reach) / unit)
+    return np.array([np.where([k & 1, k & 2, k & 4], high, low) for k in range(8)]) * unit
