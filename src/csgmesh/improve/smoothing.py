@@ -8,6 +8,7 @@ from csgmesh.errors import InputError
 from csgmesh.improve.breakthrough import broken_through
 from csgmesh.improve.optimisation import optimise
 from csgmesh.improve.stars import BEST, CENTROIDS, NEIGHBOURS, Stars
+from csgmesh.improve.tetrahedra.smoothing import smooth_tetrahedra
 from csgmesh.improve.workpiece import Progress, Workpiece
 from csgmesh.mesh import Mesh
 from csgmesh.options import near
@@ -18,26 +19,29 @@ METHODS = ("laplace", "odt", "optimize")
 def smooth(
     mesh: Mesh, method: str = "odt", *, sweeps: int = 5, progress: Progress | None = None
 ) -> Mesh:
-    """Move the vertices of a plane mesh to better places.
+    """Move the vertices of a mesh to better places.
 
     A vertex moves only if no cell around it turns over and the worst cell around it does not get
     worse; so the mesh's worst cell never does. Among triangles alone that is the one with the
     smallest angle; where there are quads, the one with the smallest scaled Jacobian: the sine of
     the angle at a quad's sharpest or bluntest corner, or of a triangle's smallest angle over that
-    of 60 degrees. Vertices of the boundary slide along their exact curve; corners, junctions and
-    embedded points stay, and so do periodic sides and vertices on facets without an exact curve.
+    of 60 degrees. Of tetrahedra the worst is the one whose dihedral angles come nearest to 0 or 180
+    degrees. Vertices of the boundary slide along their exact curve or surface; corners, junctions
+    and embedded points stay, and so do periodic sides and vertices on facets without an exact curve
+    or surface.
 
     Parameters
     ----------
     mesh : Mesh
-        Of triangles, quads or both.
+        Of triangles, quads or both, or in space of tetrahedra.
     method : {"odt", "laplace", "optimize"}
         To the centre that minimises the interpolation error (optimal Delaunay triangulation: Chen
         and Xu 2004), with quads to the mean of the cells' centroids; to the mean of the neighbours;
-        or raise the smallest angles, which also turns edges of a mesh of triangles: see
-        `csgmesh.improve.optimise`.
+        or raise the smallest angles, which also turns edges of a mesh of triangles and flips
+        tetrahedra: see `csgmesh.improve.optimise` and `csgmesh.improve.improve_tetrahedra`.
     sweeps : int, default 5
-        How often to go through all vertices; with triangles alone "optimize" decides for itself.
+        How often to go through all vertices; with triangles or tetrahedra alone "optimize" decides
+        for itself.
     progress : callable, optional
         Called as ``progress(stage, done, total)``.
 
@@ -49,7 +53,8 @@ def smooth(
     Raises
     ------
     InputError
-        If the method is unknown, or the mesh holds anything but straight triangles and quads.
+        If the method is unknown, or the mesh holds anything but straight triangles and quads, or in
+        space straight tetrahedra.
 
     Examples
     --------
@@ -62,6 +67,8 @@ def smooth(
         raise InputError(f"smooth has no method {method!r}; {near(str(method), METHODS)}")
     if sweeps < 0:
         raise InputError(f"sweeps must not be negative; got {sweeps!r}")
+    if mesh.dim == 3:
+        return smooth_tetrahedra(mesh, method, sweeps, progress)
     if set(mesh.cells) - {"triangle"}:
         return _smooth_with_quads(mesh, method, sweeps, progress)
     if method == "optimize":

@@ -73,6 +73,8 @@ _HOME = {
     "treat_cells": "tet_improvement.treatment",
     "wish_moves": "tet_improvement.treatment",
     "grant_wishes": "tet_improvement.treatment",
+    "centre_vertices": "tet_improvement.centring",
+    "settle_moves": "tet_improvement.centring",
     "split_leaves": "tree.leaves",
     "mark_unbalanced": "tree.leaves",
     "places": "tree.leaves",

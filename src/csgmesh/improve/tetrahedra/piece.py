@@ -116,19 +116,26 @@ class Piece:
         busy = np.zeros(len(a.kind), np.int8)
         while kernels.wish_moves(a, bad, busy):
             pass
-        n = int(a.count[WISHES])
+        return self.settle(kernels.grant_wishes)
+
+    def settle(self, decide: Callable[[Any, np.ndarray], None]) -> int:
+        """Put the wishes on the exact surface and move where `decide` lets them; how many moved.
+
+        No two wishes are of one triangle.
+        """
+        a, n = self.arrays, int(self.arrays.count[WISHES])
         if not n:
             return 0
         wishing = a.wish[:n].astype(np.int64)
         places = a.moves.reshape(-1, 3)
         places[:n] = self.chords.surface.project(self.vertices[wishing], places[:n])
-        triangles = a.triangle.reshape(-1, 3).astype(np.int64)
+        triangles = a.triangle.reshape(-1, 3)
         normals = a.normal.reshape(-1, 3, 3)
         refused, row, column, new = self.chords.refused(
             triangles, a.face, normals, a.xyz.reshape(-1, 3), wishing, places[:n]
         )
         moved = (~refused).astype(np.int8)
-        kernels.grant_wishes(a, moved)
+        decide(a, moved)
         number = np.zeros(len(a.kind), np.int64)
         number[wishing] = np.arange(n)
         kept = moved[number[triangles[row, column]]] != 0

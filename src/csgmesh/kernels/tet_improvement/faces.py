@@ -13,7 +13,7 @@ from .shapes import shape_of
 def face_gain(view, t, f):
     """Worst shape there would be without face f of cell t; 0 if it must stay or nothing gains."""
     g = view.mate[4 * t + f]
-    if g < 0 or view.wall[4 * t + f] >= 0:
+    if g < 0 or view.wall[4 * t + f] >= 0 or view.region[g >> 2] != view.region[t]:
         return 0.0
     a = view.corner[4 * t + f]
     b = view.corner[g]

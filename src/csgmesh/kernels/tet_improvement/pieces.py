@@ -129,11 +129,18 @@ def connect_cells(corners, mates, walls, of_vertices, triangles, n_cells, hash_t
 
 @njit(**ENTRY)
 def fix_pinched(arrays, n_cells, degrees):
-    """Fix vertices whose cells do not all hang together by faces."""
+    """Fix vertices whose cells do not all hang together by faces; freeze those at open faces.
+
+    A face is open if it is no wall and has nothing beyond, or another region.
+    """
     view = view_of(arrays)
     degree = pointer(degrees)
     for h in range(4 * n_cells):
         degree[view.corner[h]] += 1
+        g = view.mate[h]
+        if view.wall[h] < 0 and (g < 0 or view.region[g >> 2] != view.region[h >> 2]):
+            for k in range(1, 4):
+                view.kind[view.corner[(h & ~3) + ((h & 3) ^ k)]] = FROZEN
     for v in range(degrees.shape[0]):
         kind = view.kind[v]
         if kind > FREE and kind < FIXED and gather_star(view, v) != degree[v]:
