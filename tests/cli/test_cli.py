@@ -212,6 +212,43 @@ def test_draw(plate: Path) -> None:
     assert run("draw", plate, "-o", "plate.gif").exit_code == 2
 
 
+def test_solids_are_drawn_without_a_mesher(tmp_path: Path, monkeypatch) -> None:
+    from matplotlib.image import imread
+
+    monkeypatch.chdir(tmp_path)
+    Path("part.yaml").write_text(
+        "csgmesh: 1\ndomain: {difference: [{box: {lo: [0, 0, 0], hi: [4, 2, 1]}}, "
+        "{ball: {center: [4, 0, 1], radius: 1}}]}\n"
+    )
+    Path("part.csg").write_text("cube(size = [4, 2, 1], center = false);")
+    for source, options in (
+        ("part.yaml", ()),
+        ("part.yaml", ("--domain", "--view", "30,40")),
+        ("part.csg", ()),
+    ):
+        result = run("draw", source, "-o", "part.png", *options)
+        assert result.exit_code == 0, result.stderr
+        assert imread("part.png")[..., :3].std() > 0.05
+        Path("part.png").unlink()
+    for options, said in (
+        (("--view", "30"), "--view takes 2 numbers"),
+        (("--cut", "a,b"), "--cut takes 6 numbers"),
+        (("--cut", "0,0,0,1,0,0"), "cut needs a mesh"),
+    ):
+        result = run("draw", "part.yaml", *options)
+        assert result.exit_code == 2
+        assert said in result.stderr
+
+
+def test_convert_writes_the_boundary_of_a_solid(tmp_path: Path, monkeypatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    box = cm.Box((0, 0, 0), (1, 2, 3))
+    cm.write("box.vtu", cm.generate(box, cm.Sweep(cm.Structured()), size=1))
+    for suffix in ("stl", "obj", "3mf"):
+        assert run("convert", "box.vtu", f"box.{suffix}").exit_code == 0
+        assert cm.evaluate(cm.read_shape(f"box.{suffix}")).volumes()[0] == pytest.approx(6)
+
+
 def test_convert_keeps_names(plate: Path) -> None:
     run("mesh", plate, "-o", "plate.msh")
     assert run("convert", "plate.msh", "plate.vtu").exit_code == 0

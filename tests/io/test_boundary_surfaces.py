@@ -148,3 +148,20 @@ def test_pyvista_gets_all_cells_facets_and_names(two, wedges, monkeypatch):
     assert len(grid.types) == wedges.n_cells + wedges.n_facets
     plane = cm.to_pyvista(cm.elevate(cm.generate(cm.Disk((0, 0), 1), size=0.5), order=3))
     assert plane.points.shape[1] == 3 and set(plane.types.tolist()) == {68, 69}
+
+
+def test_abaqus_holds_all_kinds_of_cells_and_sets_over_several_kinds(tmp_path):
+    turned = cm.Revolve(cm.Box((0, 0), (1, 1)), name="drum")
+    mesh = cm.generate(turned, cm.Sweep(), size=0.5)
+    assert set(mesh.cells) == {"wedge", "pyramid", "tetra"}
+    cm.write(tmp_path / "drum.inp", mesh)
+    types = [t for t in (tmp_path / "drum.inp").read_text().splitlines() if "TYPE=" in t]
+    assert {t.split("=")[1] for t in types} == {"C3D6", "C3D5", "C3D4", "S4", "S3"}
+    back = cm.read(tmp_path / "drum.inp")
+    assert {k: len(v) for k, v in back.cells.items()} == {k: len(v) for k, v in mesh.cells.items()}
+    assert set(back.names) == set(mesh.names)
+    for name in mesh.names:
+        assert {k: len(v) for k, v in back.boundary(name).items() if len(v)} == {
+            k: len(v) for k, v in mesh.boundary(name).items() if len(v)
+        }
+    assert cm.check(back, turned).ok

@@ -37,6 +37,11 @@ def is_domain_file(path: Path) -> bool:
     return path.suffix.lower() in (".yaml", ".yml")
 
 
+def is_shape_file(path: Path) -> bool:
+    """Whether a file holds a shape and never a mesh, by its suffix."""
+    return path.suffix.lower() in (".csg", ".3mf")
+
+
 def load_domain_file(
     path: Path,
     parameters: list[str] | None,

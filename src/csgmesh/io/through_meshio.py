@@ -101,11 +101,13 @@ def write(path: Path, mesh: Mesh) -> None:
         [(b.type, b.data.astype(np.int32) if form.module == "ply" else b.data) for b in blocks],
         **_tagged(form, mesh, whole, n_blocks),
     )
-    _foreign(path, "written", importlib.import_module(f"meshio.{form.module}").write, given)
+    _foreign(path, "written", _library(form).write, given)
     if form.module in ("ply", "obj"):
         _without_date(path)
-    if form.module == "abaqus" and mesh.dim == 3:
-        _plain_elements(path)
+    if form.module == "abaqus":
+        _whole_sets(path)
+        if mesh.dim == 3:
+            _plain_elements(path)
 
 
 def read(path: Path) -> Mesh:
@@ -113,8 +115,17 @@ def read(path: Path) -> Mesh:
     form = _FORMATS[path.suffix.lower()]
     if form.needs and not re.search(form.needs, path.read_bytes(), re.MULTILINE):
         raise FileFormatError(f"{path} is no {path.suffix} file, or is cut short")
+    return from_meshio(_foreign(path, "read", _library(form).read), path)
+
+
+def _library(form: _Foreign) -> Any:
+    """The module of meshio; Abaqus' pyramids, which it does not know, are told to it."""
     module = importlib.import_module(f"meshio.{form.module}")
-    return from_meshio(_foreign(path, "read", module.read), path)
+    if form.module == "abaqus":
+        names = importlib.import_module("meshio.abaqus._abaqus")
+        names.meshio_to_abaqus_type.setdefault("pyramid", "C3D5")
+        names.abaqus_to_meshio_type.setdefault("C3D5", "pyramid")
+    return module
 
 
 def _tagged(form: _Foreign, mesh: Mesh, whole: Any, n_blocks: int) -> dict[str, Any]:
@@ -165,6 +176,25 @@ def _without_date(path: Path) -> None:
     """Take the time of writing out of a header: equal meshes must give equal bytes."""
     text = path.read_bytes()
     path.write_bytes(re.sub(rb"(Created by meshio)[^\n]*", rb"\1", text, count=1))
+
+
+def _whole_sets(path: Path) -> None:
+    """Make one set of those that have one name.
+
+    meshio writes a set a kind of cell. Abaqus adds them up; meshio itself, when it reads them,
+    keeps the last.
+    """
+    head, *sets = path.read_text().split("*ELSET, ELSET=")
+    if not sets:
+        return
+    last, star, tail = sets[-1].partition("*NSET")
+    sets[-1] = last
+    rows: dict[str, list[str]] = {}
+    for entry in sets:
+        name, _, numbers = entry.partition("\n")
+        rows.setdefault(name, []).append(numbers.strip())
+    joined = "".join(f"*ELSET, ELSET={k}\n" + ",\n".join(v) + "\n" for k, v in rows.items())
+    path.write_text(head + joined + star + tail)
 
 
 #: Of the names that Abaqus has for elements of one shape, meshio takes the last in its list, such
