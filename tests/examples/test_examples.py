@@ -245,3 +245,15 @@ def test_openscad(run):
     assert volume == pytest.approx(plate + 24 * 24 * 16 - np.pi * 32 * 24 - pocket, rel=1e-3)
     assert bore == pytest.approx(np.pi * 8 * 24, rel=2e-3)  # in chords 0.04 deep
     check_picture(folder / "clamp.png")
+
+
+def test_heat(run):
+    printed, folder = run("heat")
+    orders = [float(order) for order in re.findall(r"order (\S+)", printed)]
+    assert len(orders) == 2
+    assert min(orders) > 1.9
+    assert "\nvalid\n" in printed
+    inside, middle, outside = map(float, re.search(r"wall: (.*) (.*) (.*)", printed).groups())
+    assert abs(middle - np.log(2 / 1.5)) < 0.005
+    assert inside > 0.68 > 0.01 > outside
+    check_picture(folder / "heat.png")
