@@ -24,7 +24,7 @@ def main() -> None:
     for example in sorted(EXAMPLES.glob("*.py")):
         with TemporaryDirectory() as folder:
             os.chdir(folder)
-            runpy.run_path(str(example))
+            runpy.run_path(str(example), run_name="__main__")
             os.chdir(home)
             picture = f"{example.stem}.png"
             with Image.open(Path(folder) / picture) as image:

@@ -6,6 +6,7 @@ Lengths are millimetres or units; every part of a boundary that loads or sizes m
 from collections.abc import Callable
 from math import cos, pi, radians, sin
 
+import matplotlib.pyplot as plt
 import numpy as np
 
 import csgmesh as cm
@@ -94,6 +95,10 @@ ALL: dict[str, Callable[[], cm.Shape | cm.Regions]] = {
 }
 
 if __name__ == "__main__":
-    for name, solid in ALL.items():
-        low, high = solid().bounds()
-        print(name, "from", low.round(3), "to", high.round(3))
+    figure, axes = plt.subplots(2, 4, figsize=(13, 6.5), layout="constrained")
+    for ax, (name, solid) in zip(axes.flat, ALL.items(), strict=False):
+        domain = cm.evaluate(solid(), deviation=0.05 if name == "crowd" else None)
+        print(name, domain)
+        cm.draw(domain, ax=ax, legend=False, title=name.replace("_", " "))
+    axes.flat[-1].set_axis_off()
+    figure.savefig("solids.png", dpi=110)

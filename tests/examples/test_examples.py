@@ -210,8 +210,9 @@ def test_refined(run):
 
 
 def test_solids(run):
-    printed, _ = run("solids")
+    printed, folder = run("solids")
     assert len(printed.splitlines()) == 7
+    check_picture(folder / "solids.png")
     solids = runpy.run_path(str(EXAMPLES / "solids.py"))["ALL"]
     bracket = cm.evaluate(solids["bracket"](), deviation=1e-3)
     rib, plates = 6 * 24 * 22 / 2, 40 * (60 * 8 + 8 * 42)
@@ -244,7 +245,7 @@ def test_openscad(run):
     pocket = 4.9 * 6 * 0.5 * 25 * np.sin(np.pi / 3)
     assert volume == pytest.approx(plate + 24 * 24 * 16 - np.pi * 32 * 24 - pocket, rel=1e-3)
     assert bore == pytest.approx(np.pi * 8 * 24, rel=2e-3)  # in chords 0.04 deep
-    check_picture(folder / "clamp.png")
+    check_picture(folder / "openscad.png")
 
 
 def test_heat(run):

@@ -156,9 +156,9 @@ def _called(key: str, mesh: Any) -> str:
 
 
 def _usable(name: str, default: str) -> str:
-    """A name without what names must not hold."""
-    plain = re.sub(r'[*?\[\]".\s]+|[^ -~\w]', "_", name.strip()).strip("_")
-    return plain if plain.isprintable() and plain else default
+    """A name without what names must not hold; dots stay, between parts that are not empty."""
+    parts = (re.sub(r"[^\w+-]+", "_", part).strip("_") for part in name.split("."))
+    return ".".join(part for part in parts if part) or default
 
 
 def _different(names: list[str]) -> list[str]:
