@@ -148,6 +148,15 @@ def test_tetrahedra_take_the_region_around_them(keeps: bool) -> None:
     assert_conforming(cells, surface, np.array([45.0 - ball, ball]))
 
 
+def test_rounding_leaves_no_flat_tetrahedra_on_flat_faces() -> None:
+    shape, size = SOLIDS["cube less ball"]
+    surface = surface_of(cm.evaluate(shape), size)
+    cells = tetrahedralize(surface, NONE)
+    a, b, c, d = (cells.points[cells.tets[:, k]] for k in range(4))
+    # Facets of a turned profile are flat quads, cut in two.
+    assert (np.einsum("ij,ij->i", np.cross(b - a, c - a), d - a) > 1e-7).all()
+
+
 def test_equal_points_are_an_error_with_their_place() -> None:
     surface = surface_of(cm.evaluate(CUBE))
     with pytest.raises(cm.MeshingError, match=r"points 8 and 9 are both \(0.5, 0.25, 0.5\)"):

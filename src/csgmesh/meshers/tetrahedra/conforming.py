@@ -10,6 +10,7 @@ from csgmesh.errors import MeshingError
 from csgmesh.meshers.tetrahedra.kept import Kept
 from csgmesh.meshers.tetrahedra.net import MOST_POINTS, Net
 from csgmesh.meshers.tetrahedra.result import Tetrahedra
+from csgmesh.meshers.tetrahedra.slivers import peel
 from csgmesh.meshers.tetrahedra.swaps import swap_missing
 
 #: Triangles recovered late can make way for others that could not be recovered before them.
@@ -113,14 +114,13 @@ class _Filling:
                 missing,
                 self.points[triangles[missing]].mean(axis=1),
             )
-        tets, region = self._inside(triangles)
-        return Tetrahedra(self.points, tets, region, triangles, surface.face)
+        return self._inside(triangles)
 
-    def _inside(self, triangles: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Tetrahedra of all regions (m, 4) and their regions (m,)."""
-        net, kept = self.net, self.kept
+    def _inside(self, triangles: np.ndarray) -> Tetrahedra:
+        """Tetrahedra of all regions."""
+        net, kept, surface = self.net, self.kept, self.surface
         stops = net.faces(self.walls)
-        label, status = net.flood(triangles, self.surface.region, stops)
+        label, status = net.flood(triangles, surface.region, stops)
         rows, is_cell = net.cells()
         if status != -1:
             if status >= 0:
@@ -129,16 +129,17 @@ class _Filling:
                 corners = net.order[rows[-2 - status, :3]]
                 place = self.points[self.used[corners[corners < len(self.used)]]].mean(axis=0)
             raise MeshingError(f"the surface does not part its regions near {_text(place)}")
+        triangles = self.used[peel(net, triangles, surface.face, surface.region, label)]
         keep = np.flatnonzero(is_cell & (label >= 0))
         outside = label[net.across(self.walls, stops) >> 2].astype(np.int64)
         tets = np.empty((len(keep) + len(kept.tets), 4), np.int64)
         tets[: len(keep)] = self.used[net.order[rows[keep]]]
         tets[len(keep) :] = kept.tets
-        tets[len(keep) :] += self.surface.n_points
+        tets[len(keep) :] += surface.n_points
         region = np.empty(len(tets), np.int64)
         region[: len(keep)] = label[keep]
         region[len(keep) :] = kept.regions(outside)
-        return tets, region
+        return Tetrahedra(self.points, tets, region, triangles, surface.face)
 
     def _twins(self) -> str:
         if self.net.twins is None:

@@ -27,12 +27,15 @@ class Net:
     """Delaunay tetrahedra of points, in the kernels' arrays.
 
     Vertices are numbered in the order of their insertion: `order` leads to the numbers of the
-    points, `rank` back. Coordinates are scaled by a power of two, which rounds nothing.
+    points, `rank` back. Coordinates are scaled by a power of two, which rounds nothing; `diagonal`
+    is that of the points' box.
     """
 
     def __init__(self, points: np.ndarray, *, has_box: bool) -> None:
         largest = float(np.abs(points).max()) if points.size else 1.0
         given = points * 2.0 ** -np.frexp(largest)[1] if largest > 0.0 else points
+        span = given.max(axis=0) - given.min(axis=0) if len(given) else np.zeros(3)
+        self.diagonal = float(np.sqrt((span * span).sum()))
         if has_box:
             given = np.vstack([given, _box(given)])
         self.n_points = len(points)
