@@ -62,8 +62,22 @@ def overlapping_pairs(lo: np.ndarray, hi: np.ndarray, group: np.ndarray) -> np.n
         found += _met(lo, hi, group, level, box, own_box, start[at], end[at])
     if not found:
         return np.zeros((0, 2), np.int64)
-    key = np.unique(np.concatenate(found))
+    key = distinct(np.concatenate(found))
     return np.column_stack([key // n, key % n])
+
+
+def distinct(keys: np.ndarray) -> np.ndarray:
+    """Numbers in increasing order, each once.
+
+    By sorting: `numpy.unique` hashes, which takes several times as long for millions of keys.
+
+    Examples
+    --------
+    >>> distinct(np.array([3, 1, 3]))
+    array([1, 3])
+    """
+    ordered = np.sort(keys)
+    return ordered[np.r_[True, ordered[1:] != ordered[:-1]][: len(ordered)]]
 
 
 def _cells(

@@ -32,16 +32,17 @@ def project_vertices(
     for k in np.unique(count[count > 1]).tolist():
         at = np.flatnonzero(count == k)
         rows = on[first[at][:, None] + np.arange(k)]
-        place = points[at]
         for _ in range(_STEPS):
+            place = out[at]
             flat = np.repeat(place, k, axis=0)
             foot = surfaces.project(rows.ravel(), flat)
             normal = surfaces.normals(rows.ravel(), foot).reshape(-1, k, 3)
             gap = ((foot - flat).reshape(-1, k, 3) * normal).sum(axis=2)
             inverse = np.linalg.pinv(normal, rcond=_INDEPENDENT)
             move = np.einsum("vij,vj->vi", inverse, gap)
-            place = place + move
-            if np.abs(move).max() <= 4.0 * np.finfo(float).eps:
+            out[at] = place + move
+            going = np.abs(move).max(axis=1) > 4.0 * np.finfo(float).eps
+            if not going.any():
                 break
-        out[at] = place
+            at, rows = at[going], rows[going]
     return out

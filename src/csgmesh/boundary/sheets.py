@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from csgmesh.boundary.neighbours import overlapping_pairs
+from csgmesh.boundary.neighbours import distinct, overlapping_pairs
 from csgmesh.boundary.touching import Sheets
 from csgmesh.csg.program import Leaf
 
@@ -128,7 +128,7 @@ def _names(
     leaves: Sequence[Leaf],
 ) -> list[tuple[str, ...]]:
     n_surfaces = len(leaf_of)
-    key = np.unique(group * n_surfaces + sheets.surface)
+    key = distinct(group * n_surfaces + sheets.surface)
     of_group, surface = key // n_surfaces, (key % n_surfaces).tolist()
     start = np.searchsorted(of_group, np.arange(n + 1)).tolist()
     known: dict[tuple[int, ...], tuple[str, ...]] = {}

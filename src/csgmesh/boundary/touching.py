@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from csgmesh.boundary.neighbours import overlapping_pairs
+from csgmesh.boundary.neighbours import distinct, overlapping_pairs
 from csgmesh.boundary.overlay import coplanar_overlaps, overlaid
 from csgmesh.boundary.splitting import halved
 from csgmesh.errors import EvaluationError
@@ -72,9 +72,11 @@ def settle(sheets: Sheets, snap: float) -> Sheets:
     _merge_points(sheets, snap)
     active = np.ones(len(sheets.triangles), bool)
     for _ in range(_ROUNDS):
-        events, active = _touched(sheets, active, snap)
+        facet = np.flatnonzero(active)
+        pairs = _near(sheets, facet, snap)
+        events, active = _touched(sheets, facet, pairs, snap)
         if not events:
-            _overlay(sheets, active, snap)
+            _overlay(sheets, facet, pairs, snap)
             return sheets
         vertex, merged = _with_new_points(sheets, events, active, snap)
         triangles, parent = halved(
@@ -90,11 +92,10 @@ def settle(sheets: Sheets, snap: float) -> Sheets:
     raise EvaluationError(f"pieces of the boundary touch without end near ({x}, {y}, {z})")
 
 
-def _overlay(sheets: Sheets, active: np.ndarray, snap: float) -> None:
+def _overlay(sheets: Sheets, facet: np.ndarray, pairs: np.ndarray, snap: float) -> None:
     """Divide facets that overlap alike; their vertices are settled."""
-    facet = np.flatnonzero(active)
     corner = sheets.points[sheets.triangles[facet]]
-    pairs = coplanar_overlaps(corner, _near(sheets, facet, snap), snap)
+    pairs = coplanar_overlaps(corner, pairs, snap)
     if not len(pairs):
         return
     new = overlaid(sheets.points, sheets.triangles[facet], _sheet(sheets)[facet], pairs, snap)
@@ -157,20 +158,21 @@ def _with_new_points(
     return to[events.vertex], to
 
 
-def _touched(sheets: Sheets, active: np.ndarray, snap: float) -> tuple[_Events, np.ndarray]:
-    """Touchings among the active facets, and the facets that are involved in any."""
+def _touched(
+    sheets: Sheets, facet: np.ndarray, pairs: np.ndarray, snap: float
+) -> tuple[_Events, np.ndarray]:
+    """Touchings among pairs of the given facets, and the facets that are involved in any."""
     points, n = sheets.points, len(sheets.points)
-    facet = np.flatnonzero(active)
     triangles = sheets.triangles[facet]
-    pairs = _near(sheets, facet, snap)
-    involved = np.zeros(len(active), bool)
+    involved = np.zeros(len(sheets.triangles), bool)
     involved[facet[pairs.ravel()]] = True
     at, vertex = _meetings(triangles, pairs, n)
     edge, share, on, inside = _points_on(points, triangles, at, vertex, snap)
     caps = _caps(points, triangles, n, snap)
     involved[facet[caps[3]]] = True
-    diagonal = _diagonals(points, triangles, _sheet(sheets)[facet], snap)
-    one, two, share_one, share_two, places = _crossings(points, triangles, pairs, diagonal, snap)
+    one, two, share_one, share_two, places = _crossings(
+        points, triangles, pairs, _sheet(sheets)[facet], snap
+    )
     new = n + np.arange(len(places))
     edges = np.concatenate([edge, caps[0], one, two])
     shares = np.concatenate([share, caps[1], share_one, share_two])
@@ -207,21 +209,20 @@ def _near(sheets: Sheets, facet: np.ndarray, snap: float) -> np.ndarray:
         normal = np.cross(p[:, 1] - p[:, 0], p[:, 2] - p[:, 0])
         height = np.einsum("kij,kj->ki", q - p[:, :1], normal)
         reach = snap * np.sqrt((normal * normal).sum(axis=1))[:, None]
-        meets = (height <= reach).any(axis=1) & (height >= -reach).any(axis=1)
-        # Neighbours along an edge only touch there, unless they fold back.
+        # What lies on one side but for corners in common meets the other facet in these only.
         own, other = sheets.triangles[facet[pairs[:, a]]], sheets.triangles[facet[pairs[:, b]]]
         shared = (own[:, :, None] == other[:, None, :]).any(axis=1)
-        beside = (shared.sum(axis=1) == 2) & ((np.abs(height) > reach) & ~shared).any(axis=1)
-        pairs = pairs[meets & ~beside]
+        above, below = (height > reach) | shared, (height < -reach) | shared
+        clear = ~shared.all(axis=1) & (above.all(axis=1) | below.all(axis=1))
+        pairs = pairs[~clear]
     return pairs
 
 
 def _meetings(triangles: np.ndarray, pairs: np.ndarray, n: int) -> tuple[np.ndarray, np.ndarray]:
     """Facets and corners of the other facets of their pairs, each once."""
-    key = np.concatenate(
-        [pairs[:, a, None] * n + triangles[pairs[:, 1 - a]] for a in (0, 1)]
-    ).ravel()
-    key = np.unique(key)
+    key = distinct(
+        np.concatenate([pairs[:, a, None] * n + triangles[pairs[:, 1 - a]] for a in (0, 1)]).ravel()
+    )
     facet, vertex = key // n, key % n
     foreign = (triangles[facet] != vertex[:, None]).all(axis=1)
     return facet[foreign], vertex[foreign]
@@ -274,12 +275,14 @@ def _caps(
 
 
 def _diagonals(
-    points: np.ndarray, triangles: np.ndarray, sheet: np.ndarray, snap: float
+    points: np.ndarray, triangles: np.ndarray, sheet: np.ndarray, wanted: np.ndarray, snap: float
 ) -> np.ndarray:
-    """Edges inside flat parts of a sheet, as increasing numbers ``low * n + high``."""
+    """Those of the wanted edges, ``low * n + high``, that lie inside flat parts of a sheet."""
     n = len(points)
     head = np.roll(triangles, -1, axis=1)
-    key = (np.minimum(triangles, head) * n + np.maximum(triangles, head)).ravel()
+    key = np.minimum(triangles, head) * n + np.maximum(triangles, head)
+    around = np.flatnonzero(np.isin(key, wanted).any(axis=1))
+    triangles, key, sheet = triangles[around], key[around].ravel(), sheet[around]
     of_sheet = np.repeat(sheet, 3)
     order = np.lexsort((of_sheet, key))
     k, s = key[order], of_sheet[order]
@@ -298,22 +301,21 @@ def _diagonals(
 
 
 def _crossings(
-    points: np.ndarray, triangles: np.ndarray, pairs: np.ndarray, diagonal: np.ndarray, snap: float
+    points: np.ndarray, triangles: np.ndarray, pairs: np.ndarray, sheet: np.ndarray, snap: float
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """Pairs of edges, no diagonals, that cross: both edges, where along each, and the place."""
-    n, tail = len(points), triangles
-    head = np.roll(triangles, -1, axis=1)
+    n = len(points)
+    met, number = np.unique(pairs, return_inverse=True)
+    pairs, tail = number.reshape(-1, 2), triangles[met]
+    head = np.roll(tail, -1, axis=1)
     edge = np.minimum(tail, head) * n + np.maximum(tail, head)
     names, number = np.unique(edge, return_inverse=True)
     number = number.reshape(-1, 3)
     one = np.repeat(number[pairs[:, 0]], 3, axis=1).ravel()
     two = np.tile(number[pairs[:, 1]], (1, 3)).ravel()
     k = len(names)
-    key = np.unique(np.minimum(one, two) * k + np.maximum(one, two))
+    key = distinct(np.minimum(one, two) * k + np.maximum(one, two))
     one, two = key // k, key % k
-    bounds = ~np.isin(names, diagonal)
-    bounding = bounds[one] & bounds[two]
-    one, two = one[bounding], two[bounding]
     ends = np.stack([names // n, names % n], axis=1)
     a, b = ends[one], ends[two]
     apart = (a[:, :, None] != b[:, None, :]).all(axis=(1, 2))
@@ -337,6 +339,9 @@ def _crossings(
             for other in (0, 1):
                 gap = points[x[:, end]] - points[y[:, other]]
                 clear &= (gap * gap).sum(axis=1) > snap * snap
+    found = np.unique(names[np.append(one[clear], two[clear])])
+    diagonal = _diagonals(points, triangles, sheet, found, snap)
+    clear &= ~np.isin(names[one], diagonal) & ~np.isin(names[two], diagonal)
     one, two, a, b, s, t = one[clear], two[clear], a[clear], b[clear], s[clear], t[clear]
     place = 0.5 * (
         points[a[:, 0]] + s[:, None] * (points[a[:, 1]] - points[a[:, 0]])

@@ -160,7 +160,28 @@ class Surfaces:
         return np.einsum("kij,kj->ki", self.inverse[i], points - self.offset[i])
 
     def _parameter(self, i: np.ndarray, flat: np.ndarray) -> np.ndarray:
-        return self.profile.project(i, flat, *self.profile.interval[i].T)
+        out = np.empty(len(i))
+        at = self._circular[i]
+        out[at] = self._angle(i[at], flat[at])
+        if not at.all():
+            on = i[~at]
+            out[~at] = self.profile.project(on, flat[~at], *self.profile.interval[on].T)
+        return out
+
+    @cached_property
+    def _circular(self) -> np.ndarray:
+        return self.profile.is_circular()
+
+    def _angle(self, i: np.ndarray, flat: np.ndarray) -> np.ndarray:
+        """Parameters of the nearest points on circular arcs, (k,)."""
+        data = self.profile.data[i]
+        spoke = flat - data[:, :2]
+        low, high = np.sort(self.profile.interval[i], axis=1).T
+        along, across = (spoke * data[:, 2:4]).sum(axis=1), (spoke * data[:, 4:6]).sum(axis=1)
+        angle = np.arctan2(across, along)
+        middle = 0.5 * (low + high)
+        angle += 2.0 * np.pi * np.round((middle - angle) / (2.0 * np.pi))
+        return np.clip(angle, low, high)
 
     def _outward(self, i: np.ndarray, flat: np.ndarray) -> np.ndarray:
         """Right-hand normals of the profiles, travelled from start to end, (k, 2)."""
