@@ -10,8 +10,11 @@ import numpy as np
 from csgmesh.domain.plc import Plc
 from csgmesh.domain.surface_mesh import project_on_pairs
 from csgmesh.domain.surfaces import Surfaces
+from csgmesh.measures.space.placement import domain_labels, facet_labels
 from csgmesh.mesh import KINDS, Mesh
 from csgmesh.tolerance import ON_CURVE_SHARE, accuracy, coordinate_ulp
+
+_NONE = np.zeros(0, np.int64)
 
 
 @dataclass(frozen=True, eq=False)
@@ -129,12 +132,9 @@ def _surfaces_of(mesh: Mesh, kind: str, domain: Plc) -> np.ndarray:
     marker, region = mesh.facet_marker[kind], mesh.facet_region[kind]
     nearest = accuracy(ON_CURVE_SHARE, domain.diagonal, mesh.points)
     out, best = np.full(len(corners), -1), np.full(len(corners), np.inf)
-    groups, group = np.unique(np.column_stack([marker, region]), axis=0, return_inverse=True)
-    for g, (m, behind, ahead) in enumerate(groups.tolist()):
-        own = np.flatnonzero(group.reshape(-1) == g)
-        names = set(mesh.boundary_names[m]) if m >= 0 else set()
-        regions = {mesh.region_names[r] if r >= 0 else None for r in (behind, ahead)}
-        for s in _candidates(domain, names, regions):
+    known = domain_labels(domain)
+    for label, own in facet_labels(mesh, marker, region):
+        for s in np.unique(domain.facet_surface[known.get(label, _NONE)]).tolist():
             flat = corners[own].reshape(-1, 3)
             off = domain.surfaces.distance(np.full(len(flat), s), flat)
             at = own[(off.reshape(len(own), -1) <= nearest).all(axis=1)]
@@ -142,14 +142,3 @@ def _surfaces_of(mesh: Mesh, kind: str, domain: Plc) -> np.ndarray:
             nearer = middle < best[at] - nearest
             out[at[nearer]], best[at[nearer]] = s, middle[nearer]
     return out
-
-
-def _candidates(domain: Plc, names: set[str], regions: set[str | None]) -> list[int]:
-    """Surfaces of the domain's facets with some names and between some regions, ascending."""
-    named = [m for m, entry in enumerate(domain.boundary_names) if set(entry) == names]
-    beside = [r for r, name in enumerate(domain.region_names) if name in regions]
-    if None in regions:
-        beside.append(-1)
-    on = np.isin(domain.facet_marker, named) & np.isin(domain.facet_region, beside).all(axis=1)
-    found: list[int] = np.unique(domain.facet_surface[on]).tolist()
-    return found
