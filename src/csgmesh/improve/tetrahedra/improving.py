@@ -17,7 +17,7 @@ Progress = Callable[[str, int, int], None]
 Improved = tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray]
 
 #: Angle that every tetrahedron is treated to reach, degrees.
-USUAL_GOAL = 20.0
+USUAL_GOAL = 25.0
 #: A vertex stops moving where its worst angle is this much beyond the goal, degrees.
 EASE = 6.0
 #: Passes that only flip and move; those after them put vertices in and take them out, too.
@@ -60,7 +60,7 @@ def improve_tetrahedra(
         Face of each triangle.
     surface : SurfaceMesh
         What each of its points lies on, and the segments of the feature curves.
-    goal : float, default 20
+    goal : float, default 25
         Angle in degrees, between 0 and 60, beyond which a tetrahedron is good enough. It counts at
         both ends: no angle is to be larger than its supplement.
     passes : int, default 2
@@ -134,13 +134,13 @@ def improve_tetrahedra(
     region = np.array(region, dtype=np.int64)
     chords = Chords(np.array(triangles, dtype=np.int64), np.array(face, dtype=np.int64), surface)
     bar, easy = (_shape(angle) for angle in (goal, min(goal + EASE, 0.5 * (goal + 60.0))))
+    scores = shapes(points, tets)
     for number in range(passes):
-        scores = shapes(points, tets)
         if not (scores <= bar).any():
             break
         piece = Piece(points, tets, region, scores, chords, bar, easy)
         piece.work(ROUNDS, number >= FAST_PASSES, progress)
-        points, tets, region = piece.put_back(points, tets, region)
+        points, tets, region, scores = piece.put_back(points, tets, region, scores)
     points, tets = _without_unused(points, tets, surface.n_points)
     return points, tets, region, chords.triangles, chords.face
 

@@ -143,8 +143,8 @@ class Piece:
         return int(moved.sum())
 
     def put_back(
-        self, points: np.ndarray, tets: np.ndarray, region: np.ndarray
-    ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        self, points: np.ndarray, tets: np.ndarray, region: np.ndarray, scores: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
         """The whole mesh with this piece as it is now; the surface is brought up to date, too."""
         a = self.arrays
         n, n_now = self.n, int(a.count[VERTICES])
@@ -156,9 +156,10 @@ class Piece:
         used = corner[:, 0] >= 0
         tets = np.concatenate([tets[~self.chosen], number[corner[used]]])
         region = np.concatenate([region[~self.chosen], a.region[used]])
+        scores = np.concatenate([scores[~self.chosen], a.score[used]])
         self.chords.triangles[self.walls] = self.vertices[a.triangle.reshape(-1, 3)]
         self.chords.normals[self.walls] = a.normal.reshape(-1, 3, 3)
-        return points, tets, region
+        return points, tets, region, scores
 
 
 def _neighbours(ends: np.ndarray, n: int) -> tuple[np.ndarray, np.ndarray]:

@@ -37,9 +37,10 @@ def smooth_tetrahedra(mesh: Mesh, method: str, sweeps: int, progress: Progress |
         )
     else:
         chords = Chords(triangles, face, surface)
-        piece = Piece(points, tets, region, shapes(points, tets), chords, _ALL, _ALL)
+        scores = shapes(points, tets)
+        piece = Piece(points, tets, region, scores, chords, _ALL, _ALL)
         _sweep(piece, surface, method == "odt", sweeps, progress)
-        points = piece.put_back(points, tets, region)[0]
+        points = piece.put_back(points, tets, region, scores)[0]
     facets = {"triangle": order[triangles]} if "triangle" in mesh.facets else {}
     lineage = {} if method == "optimize" else {"tetra": mesh.cell_parent.get("tetra")}
     return replace(
