@@ -51,6 +51,15 @@ def test_areas_in_the_plane(shapes, area):
     assert cm.evaluate(cm.Hull(shapes)).areas()[0] == pytest.approx(area, rel=1e-9)
 
 
+def test_a_corner_between_two_stretches_of_one_arc():
+    ellipse, corner = cm.Ellipse((0, 0), (1, 3)), cm.Triangle((0, 0), (2, 0), (0, 1))
+    hull = cm.Hull([ellipse, corner])
+    assert hull.bounds()[1].tolist() == [2, 3]
+    # Seen from (2, 0), in the ellipse's own measure at the distance 2, the tangents touch the unit
+    # circle at ±60°: a kite of two right triangles, less their sector, added to the circle.
+    assert cm.evaluate(hull).areas()[0] == pytest.approx(3 * (pi + 3**0.5 - pi / 3))
+
+
 def cylinder_plate():
     return cm.Hull([cm.Cylinder((x, y, 0), (x, y, 2), 0.5) for x in (0, 3) for y in (0, 2)])
 

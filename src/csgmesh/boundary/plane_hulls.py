@@ -39,7 +39,7 @@ def hull_of_curves(curves: Curves) -> Curves:
     order = _chain(points)
     if len(order) < 3:
         return Curves.empty()
-    items = _items(points[order], owner[order])
+    items = _items(curves, points[order], owner[order])
     while True:
         normals = [
             _tangent(curves, a, b) for a, b in zip(items, [*items[1:], items[0]], strict=True)
@@ -105,11 +105,15 @@ def _chain(points: np.ndarray) -> np.ndarray:
     return order[half(range(n)) + half(range(n - 1, -1, -1))]
 
 
-def _items(points: np.ndarray, owner: np.ndarray) -> list[_Item]:
-    """Runs of samples of one ellipse become one item; a seam between two of its pieces is none."""
+def _items(curves: Curves, points: np.ndarray, owner: np.ndarray) -> list[_Item]:
+    """Runs of samples of one ellipse become one item."""
     n = len(points)
     before, after = np.roll(owner, 1), np.roll(owner, -1)
-    owner = np.where((owner < 0) & (before == after), before, owner)
+    owner = owner.copy()
+    for k in np.flatnonzero((owner < 0) & (before == after) & (before >= 0)).tolist():
+        # A seam between two pieces of the ellipse, and no other shape's corner.
+        if _normal_at(curves.data[before[k]], points[k]) is not None:
+            owner[k] = before[k]
     starts = np.flatnonzero((owner != np.roll(owner, 1)) | (owner < 0))
     out = []
     for start, end in zip(starts, np.r_[starts[1:], starts[:1] + n], strict=True):
@@ -211,11 +215,19 @@ def _outline(curves: Curves, items: list[_Item]) -> Curves:
     size = max(float(np.abs(e).max()) for pair in ends for e in pair)
     for k, (_, end) in enumerate(ends):
         if k in rows:
-            data, interval = rows[k]
-            row = np.zeros((1, 8))
-            row[0, :6] = data[:6]
-            tables.append(Curves(np.array([ARC], np.int8), row, np.array([interval])))
+            tables.append(_quarters(*rows[k]))
         start = ends[(k + 1) % len(ends)][0]
         if len(ends) > 1 and np.abs(start - end).max() > 1e-13 * size:
             tables.append(Curves.lines(end[None], start[None]))
     return Curves.concatenate(tables)
+
+
+def _quarters(data: np.ndarray, interval: tuple[float, float]) -> Curves:
+    """An arc in pieces of at most a quarter turn, as those of disks are, from below π on."""
+    t0, t1 = interval
+    turns = 2.0 * np.pi * np.floor((min(t0, t1) + np.pi) / (2.0 * np.pi))
+    n = max(int(np.ceil(abs(t1 - t0) / (0.5 * np.pi) - 1e-9)), 1)
+    t = np.linspace(t0 - turns, t1 - turns, n + 1)
+    row = np.zeros((n, 8))
+    row[:, :6] = data[:6]
+    return Curves(np.full(n, ARC, np.int8), row, np.column_stack([t[:-1], t[1:]]))
