@@ -6,6 +6,7 @@ import numpy as np
 
 from csgmesh.errors import InputError
 from csgmesh.improve.breakthrough import broken_through
+from csgmesh.improve.cell_smoothing import smooth_cells
 from csgmesh.improve.optimisation import optimise
 from csgmesh.improve.stars import BEST, CENTROIDS, NEIGHBOURS, Stars
 from csgmesh.improve.tetrahedra.smoothing import smooth_tetrahedra
@@ -27,16 +28,17 @@ def smooth(
     the angle at a quad's sharpest or bluntest corner, or of a triangle's smallest angle over that
     of 60 degrees. Of tetrahedra the worst is the one whose dihedral angles come nearest to 0 or 180
     degrees. Vertices of the boundary slide along their exact curve or surface; corners, junctions
-    and embedded points stay, and so do periodic sides and vertices on facets without an exact curve
-    or surface.
+    and embedded points stay, and so do periodic sides, vertices on facets without an exact curve or
+    surface, and the boundary of a mesh of space with other cells than tetrahedra.
 
     Parameters
     ----------
     mesh : Mesh
-        Of triangles, quads or both, or in space of tetrahedra.
+        Of triangles, quads or both, or of straight cells of space.
     method : {"odt", "laplace", "optimize"}
         To the centre that minimises the interpolation error (optimal Delaunay triangulation: Chen
-        and Xu 2004), with quads to the mean of the cells' centroids; to the mean of the neighbours;
+        and Xu 2004), with quads, hexahedra and the like to the mean of the cells' centroids; to the
+        mean of the neighbours;
         or raise the smallest angles, which also turns edges of a mesh of triangles and flips
         tetrahedra: see `csgmesh.improve.optimise` and `csgmesh.improve.improve_tetrahedra`.
     sweeps : int, default 5
@@ -53,8 +55,8 @@ def smooth(
     Raises
     ------
     InputError
-        If the method is unknown, or the mesh holds anything but straight triangles and quads, or in
-        space straight tetrahedra.
+        If the method is unknown, or the mesh holds curved cells; in space also if "optimize" is
+        asked for anything but tetrahedra.
 
     Examples
     --------
@@ -67,8 +69,10 @@ def smooth(
         raise InputError(f"smooth has no method {method!r}; {near(str(method), METHODS)}")
     if sweeps < 0:
         raise InputError(f"sweeps must not be negative; got {sweeps!r}")
-    if mesh.dim == 3:
+    if mesh.dim == 3 and set(mesh.cells) == {"tetra"} and set(mesh.facets) <= {"triangle"}:
         return smooth_tetrahedra(mesh, method, sweeps, progress)
+    if mesh.dim == 3:
+        return smooth_cells(mesh, method, sweeps)
     if set(mesh.cells) - {"triangle"}:
         return _smooth_with_quads(mesh, method, sweeps, progress)
     if method == "optimize":

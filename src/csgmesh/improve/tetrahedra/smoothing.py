@@ -8,7 +8,6 @@ import numpy as np
 
 from csgmesh import kernels
 from csgmesh.domain.surface_mesh import ON_CURVE, ON_FACE, SurfaceMesh
-from csgmesh.errors import InputError
 from csgmesh.improve.strata import strata_of
 from csgmesh.improve.tetrahedra.chords import Chords
 from csgmesh.improve.tetrahedra.improving import Progress, improve_tetrahedra, shapes
@@ -21,11 +20,6 @@ _ALL = 2.0
 
 def smooth_tetrahedra(mesh: Mesh, method: str, sweeps: int, progress: Progress | None) -> Mesh:
     """Move the vertices of a mesh of tetrahedra; see `csgmesh.smooth`."""
-    if set(mesh.cells) != {"tetra"} or set(mesh.facets) - {"triangle"}:
-        held = ", ".join((*mesh.cells, *mesh.facets)) or "no cells"
-        raise InputError(
-            f"in space only meshes of straight tetrahedra can be smoothed; this one holds {held}"
-        )
     surface, number = strata_of(mesh)
     order = np.argsort(number)
     points, tets = mesh.points[order], number[mesh.cells["tetra"]]
