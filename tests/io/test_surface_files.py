@@ -214,6 +214,8 @@ BAD = {
     "beyond.off": b"OFF\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 1 9\n3 0 1 3\n3 1 2 3\n3 0 2 3\n",
     "text.off": b"OFF\nfour\n",
     "empty.obj": b"# nothing\n",
+    "plane.obj": b"v 0 0\nv 1 0\nv 0 1\nv 1 1\nf 1 2 3\n",
+    "far.off": b"OFF\n4 4 0\n0 0 0\n1e40 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 2 3\n",
     "words.obj": b"v 0 0 a\nf 1 2 3\n",
     "noise.ply": bytes(range(256)) * 20,
     "noise.stl": bytes(range(256)) * 20,

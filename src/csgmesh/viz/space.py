@@ -24,6 +24,10 @@ _LIGHT = np.array([-0.35, 0.55, 0.76])
 _AMBIENT = 0.55
 #: Faces seen more obliquely than this sine are not seen: rounding alone turns them to the viewer.
 _EDGE_ON = 1e-9
+#: A picture's facets and lines are no longer than this part of the solid's diagonal.
+_PIECES = 60
+#: Beyond so many of them nothing is halved any more.
+_MOST_PIECES = 200_000
 #: Faces more than these are drawn without their edges.
 _MANY = 40_000
 
@@ -42,6 +46,8 @@ class Polygons:
     names : tuple of tuple of str
     lines : (k, 2, 3) float64
         Drawn on top where their polygons are seen.
+    lift : float
+        So much nearer to the viewer than they are, to be in front of their own polygons.
     title : str
     """
 
@@ -50,6 +56,7 @@ class Polygons:
     region: np.ndarray
     names: tuple[tuple[str, ...], ...]
     lines: np.ndarray
+    lift: float
     title: str
 
 
@@ -64,15 +71,40 @@ def draw_space(x: Mesh | Plc, options: Options) -> Figure:
 def _of_plc(plc: Plc, options: Options) -> Polygons:
     if options.cut is not None:
         raise InputError("draw: cut needs a mesh, whose cells are left out in front of the plane")
-    corners = plc.points[plc.facets[:, [0, 1, 2, 2]]]
+    # Facets are drawn from back to front by their middles, which tells little of long ones.
+    longest = plc.diagonal / _PIECES
+    corners, facet = _pieces(plc.points[plc.facets], longest)
+    lines, _ = _pieces(plc.points[_towards(plc, options.view)], longest)
     return Polygons(
-        corners,
-        plc.facet_marker,
-        plc.facet_region[:, 0],
+        corners[:, [0, 1, 2, 2]],
+        plc.facet_marker[facet],
+        plc.facet_region[facet, 0],
         plc.boundary_names,
-        plc.points[_towards(plc, options.view)],
+        lines,
+        0.7 * longest,
         f"{plc.n_facets:,} facets, {plc.n_points:,} points",
     )
+
+
+def _pieces(corners: np.ndarray, longest: float) -> tuple[np.ndarray, np.ndarray]:
+    """Triangles (n, 3, 3) or lines (n, 2, 3) halved until no edge is longer, and their numbers."""
+    number = np.arange(len(corners))
+    k = corners.shape[1]
+    while True:
+        length = ((np.roll(corners, -1, axis=1) - corners) ** 2).sum(axis=2)
+        long = np.flatnonzero(length.max(axis=1) > longest * longest)
+        if not len(long) or len(corners) > _MOST_PIECES:
+            return corners, number
+        # The longest edge first, then halved.
+        first = np.argmax(length[long], axis=1)
+        order = (first[:, None] + np.arange(k)) % k
+        turned = np.take_along_axis(corners[long], order[:, :, None], axis=1)
+        middle = 0.5 * (turned[:, 0] + turned[:, 1])
+        front, back = turned.copy(), turned.copy()
+        front[:, 1], back[:, 0] = middle, middle
+        corners[long] = front
+        corners = np.concatenate([corners, back])
+        number = np.concatenate([number, number[long]])
 
 
 def _towards(plc: Plc, view: tuple[float, float]) -> np.ndarray:
@@ -101,7 +133,7 @@ def _of_mesh(mesh: Mesh, options: Options) -> Polygons:
     corners = mesh.points[np.where(rows < 0, rows[:, 2:3], rows)]
     counts = ", ".join(f"{len(c):,} {kind}" for kind, c in mesh.cells.items())
     lines = np.zeros((0, 2, 3))
-    return Polygons(corners, marker[seen], region[owner], mesh.boundary_names, lines, counts)
+    return Polygons(corners, marker[seen], region[owner], mesh.boundary_names, lines, 0.0, counts)
 
 
 def _behind(mesh: Mesh, rows: np.ndarray, cut: Any) -> np.ndarray:
@@ -166,7 +198,7 @@ def _picture(shown: Polygons, options: Options) -> Figure:
     lines = shown.lines @ axes_of_view.T
     pieces = [*seen[order, :, :2], *lines[:, :, :2]]
     # A line hides behind what lies nearer to the viewer, like a polygon without an inside.
-    near = lines[:, :, 2].max(axis=1, initial=-np.inf)
+    near = lines[:, :, 2].max(axis=1, initial=-np.inf) + shown.lift
     depth = np.concatenate([seen[order, :, 2].mean(axis=1), near])
     edge = np.array([to_rgb(EDGE)])
     own = np.repeat(edge, len(order), axis=0) if with_edges else colors

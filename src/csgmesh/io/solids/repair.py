@@ -55,10 +55,10 @@ def repaired(soup: Soup, where: str) -> Soup:
     if not np.isfinite(soup.points).all():
         raise FileFormatError(f"{where}: coordinates must be finite")
     soup = _clean(soup, *_merged(soup.points))
-    if len(soup.triangles) < 4:
-        raise FileFormatError(f"{where}: a solid needs four triangles; {len(soup.triangles)} found")
+    _refuse_few(soup, where)
     if (_edge_counts(soup.triangles)[1] == 1).any():
         soup = _clean(soup, *_merged_near(soup.points))
+        _refuse_few(soup, where)
         soup = _filled(soup)
     _refuse_open(soup, where)
     return _outward(_consistent(soup, where), where)
@@ -131,6 +131,11 @@ def _ring(start: int, around: dict[int, list[int]]) -> list[int] | None:
             return ring if len(ring) > 2 and start in around[ring[-1]] else None
         ring.append(following[0])
     return None
+
+
+def _refuse_few(soup: Soup, where: str) -> None:
+    if len(soup.triangles) < 4:
+        raise FileFormatError(f"{where}: a solid needs four triangles; {len(soup.triangles)} found")
 
 
 def _refuse_open(soup: Soup, where: str) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import logging
 import re
 import warnings
 from pathlib import Path
@@ -121,6 +122,10 @@ def _through_trimesh(path: Path) -> list[Part]:
         )
     import trimesh
 
+    # What it has to say of a damaged file is said by an error; without a handler it would print.
+    log = logging.getLogger("trimesh")
+    if not log.handlers:
+        log.addHandler(logging.NullHandler())
     options: dict[str, Any] = {"process": False, "maintain_order": True}
     if suffix == ".obj":
         options |= {"skip_materials": True, "group_material": False}
@@ -143,6 +148,8 @@ def _through_trimesh(path: Path) -> list[Part]:
 
 
 def _faces(mesh: Any, path: Path) -> np.ndarray:
+    if np.shape(mesh.vertices)[1:] != (3,):
+        raise FileFormatError(f"{path}: points must have three coordinates")
     faces = np.asarray(mesh.faces, np.int64).reshape(-1, 3)
     if len(faces) and (faces.min() < 0 or faces.max() >= len(mesh.vertices)):
         raise FileFormatError(f"{path}: a triangle names a point that the file does not have")
