@@ -175,7 +175,7 @@ def test_what_cannot_be_triangulated_is_refused() -> None:
         cm.delaunay([[0, 0], [1, 1]])
     with pytest.raises(InputError, match="point 1 is"):
         cm.delaunay([[0, 0], [np.nan, 1], [2, 2]])
-    with pytest.raises(InputError, match=r"shape \(n, 2\)"):
+    with pytest.raises(InputError, match=r"shape \(n, 2\) or \(n, 3\)"):
         cm.delaunay([0, 1, 2])
     with pytest.raises(InputError, match="are both"):
         cm.voronoi([[0, 0], [0, 0], [1, 1]])

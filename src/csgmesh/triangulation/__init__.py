@@ -3,7 +3,8 @@
 from csgmesh.triangulation.diagrams import Voronoi, voronoi
 from csgmesh.triangulation.flips import flip_to_delaunay
 from csgmesh.triangulation.graphs import minimum_spanning_tree, nearest_neighbours
-from csgmesh.triangulation.points import delaunay, delaunay_balls
+from csgmesh.triangulation.hulls import delaunay
+from csgmesh.triangulation.points import delaunay_balls
 
 __all__ = [
     "Voronoi",

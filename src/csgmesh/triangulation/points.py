@@ -41,12 +41,17 @@ def plane_points(points: ArrayLike) -> np.ndarray:
     array = np.array(points, np.float64)
     if array.ndim != 2 or array.shape[1] != 2:
         raise InputError(f"points must have shape (n, 2); got {array.shape}")
+    return checked(array)
+
+
+def checked(array: np.ndarray) -> np.ndarray:
+    """The same points (n, dim), if they are finite and within the range of the predicates."""
     bad = ~(np.abs(array) <= LARGEST).all(axis=1)
     if bad.any():
         at = int(bad.argmax())
         raise InputError(
             f"coordinates must be finite and at most {LARGEST:g} in magnitude; point {at} is "
-            f"({array[at, 0]:g}, {array[at, 1]:g})"
+            f"({', '.join(f'{x:g}' for x in array[at])})"
         )
     if len(array) > _MOST_POINTS:
         raise InputError(f"at most {_MOST_POINTS} points can be triangulated; got {len(array)}")
@@ -86,49 +91,6 @@ def triangulate(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     # A ghost's edge runs with the outside on its left.
     hull = [ghosts[number, (apex + 2) % 3], ghosts[number, (apex + 1) % 3]]
     return order[rows[~is_ghost]], order[np.stack(hull, axis=1)]
-
-
-def delaunay(points: ArrayLike) -> Mesh:
-    """The Delaunay triangulation of points: no point lies inside the circle of a triangle.
-
-    Among all triangulations it has the largest smallest angle. Where four points lie on a circle,
-    it is one of several. Inserted along a Hilbert curve in rounds (Amenta, Choi, Rote 2003) by
-    Bowyer and Watson (1981), with exact predicates (Shewchuk 1997).
-
-    Parameters
-    ----------
-    points : (n, 2) array_like
-        Points, all different.
-
-    Returns
-    -------
-    Mesh
-        With `points` as they were given, triangles and the edges of the convex hull, named
-        ``hull``.
-
-    Raises
-    ------
-    InputError
-        If two points are the same, or all lie on one line.
-
-    Examples
-    --------
-    >>> import csgmesh as cm
-    >>> mesh = cm.delaunay([[0, 0], [2, 0], [2, 1], [0, 1], [1, 0.5]])
-    >>> mesh.n_cells, len(mesh.boundary("hull")["line"])
-    (4, 4)
-    """
-    array = plane_points(points)
-    triangles, hull = triangulate(array)
-    return Mesh(
-        array,
-        {"triangle": triangles},
-        facets={"line": hull},
-        facet_marker={"line": np.zeros(len(hull), np.int64)},
-        facet_region={"line": np.tile([0, -1], (len(hull), 1))},
-        boundary_names=(("hull",),),
-        info={"method": "delaunay", "delaunay": True},
-    )
 
 
 def delaunay_balls(mesh: Mesh) -> tuple[np.ndarray, np.ndarray]:

@@ -13,6 +13,7 @@ from csgmesh.measures.results import Certificate, Check, offenders
 from csgmesh.measures.rules.arrays import check_indices, check_points
 from csgmesh.measures.space.case import SpaceCase
 from csgmesh.measures.space.curved import facet_middles, tetra_bounds
+from csgmesh.measures.space.delaunay import are_oriented, check_delaunay
 from csgmesh.measures.space.jacobians import least_jacobians
 from csgmesh.measures.space.placement import misplaced_facets
 from csgmesh.mesh import KINDS, Mesh
@@ -47,9 +48,13 @@ def _points(case: SpaceCase) -> Check:
 
 
 def check_orientation(case: SpaceCase) -> Check:
-    """The Jacobian is positive all over each cell."""
+    """The Jacobian is positive all over each cell; of straight tetrahedra by an exact predicate."""
     rule, bad, before = "orientation", [_NONE], 0
     for kind, rows in case.corners.items():
+        if kind == "tetra":
+            bad.append(np.flatnonzero(~are_oriented(case.mesh.points, rows)) + before)
+            before += len(rows)
+            continue
         base = {4: "tetra", 8: "hexahedron", 6: "wedge", 5: "pyramid"}[rows.shape[1]]
         least = least_jacobians(case.mesh.points, base, rows)
         if kind == "tetra10":
@@ -265,4 +270,5 @@ _RULES: tuple[tuple[str, Callable[[SpaceCase], Check]], ...] = (
     ("edge nodes", check_edge_nodes),
     ("volume", check_volume),
     ("samples", check_samples),
+    ("Delaunay", check_delaunay),
 )
