@@ -10,7 +10,7 @@ from csgmesh import kernels
 from csgmesh.measures.results import Check, offenders
 
 if TYPE_CHECKING:
-    from csgmesh.measures.space.certificate import SpaceCase
+    from csgmesh.measures.space.case import SpaceCase
 
 #: Volumes above this share of the product of three edges need no exact test: rounding of their
 #: determinant is a hundred times less.
