@@ -1,0 +1,375 @@
+"""Body-centred lattices on the leaves of an octree: corners and centres, and tetrahedra of them.
+
+A leaf's centre and corners count as near a surface within `share` times its side; a corner is near
+if it is so for one of the leaves around it. With a share above 0.433 no surface passes between a
+centre and a corner of one leaf that are both not near: each lies further from it than half their
+distance. So what is joined by such pairs lies on one side.
+"""
+
+from __future__ import annotations
+
+from numba import njit
+
+from ..pointers import ENTRY, HELPER, pointer
+from .morton import holder
+from .octants import DEEP, gathered_thrice, is_within, octant_key
+from .triangle_distance import square_distance
+
+#: Neighbours that are no leaf of the same size: outside the root or larger; smaller.
+NONE = -1
+FINER = -2
+
+
+@njit(**ENTRY)
+def number_corners(key, level, table, number, leaf_corner, corner):
+    """Number the corners of all leaves as they are first met; how many.
+
+    table, number: scratch, a power of two of entries, table filled with -1. leaf_corner: (n, 8),
+    x fastest. corner: (most, 3) places.
+    """
+    keys = pointer(key)
+    levels = pointer(level)
+    known = pointer(table)
+    numbers = pointer(number)
+    out = pointer(leaf_corner)
+    place = pointer(corner)
+    last = table.shape[0] - 1
+    m = 0
+    for i in range(key.shape[0]):
+        size = 1 << (DEEP - levels[i])
+        for c in range(8):
+            x = gathered_thrice(keys[i]) + (c & 1) * size
+            y = gathered_thrice(keys[i] >> 1) + ((c >> 1) & 1) * size
+            z = gathered_thrice(keys[i] >> 2) + (c >> 2) * size
+            wanted = x | (y << 21) | (z << 42)
+            at = ((wanted * 0x9E3779B97F4A7C1) >> 23) & last
+            while known[at] >= 0 and known[at] != wanted:
+                at = (at + 1) & last
+            if known[at] < 0:
+                known[at] = wanted
+                numbers[at] = m
+                place[3 * m] = x
+                place[3 * m + 1] = y
+                place[3 * m + 2] = z
+                m += 1
+            out[8 * i + c] = numbers[at]
+    return m
+
+
+@njit(**ENTRY)
+def mark_near_triangles(
+    key, level, box, triangles, begin, end, share, leaf_corner, stack, near_centre, near_corner
+):
+    """Mark centres and corners of leaves nearer to triangles than `share` of the leaf's side.
+
+    triangles: (m, 9) coordinates. Leaves are looked for by descent from the root.
+    """
+    keys = pointer(key)
+    levels = pointer(level)
+    at = pointer(box)
+    tri = pointer(triangles)
+    corner = pointer(leaf_corner)
+    todo = pointer(stack)
+    centre_flag = pointer(near_centre)
+    corner_flag = pointer(near_corner)
+    n = key.shape[0]
+    near = 0
+    unit = at[3]
+    for t in range(begin, end):
+        lx = (min(tri[9 * t], tri[9 * t + 3], tri[9 * t + 6]) - at[0]) / unit
+        ly = (min(tri[9 * t + 1], tri[9 * t + 4], tri[9 * t + 7]) - at[1]) / unit
+        lz = (min(tri[9 * t + 2], tri[9 * t + 5], tri[9 * t + 8]) - at[2]) / unit
+        hx = (max(tri[9 * t], tri[9 * t + 3], tri[9 * t + 6]) - at[0]) / unit
+        hy = (max(tri[9 * t + 1], tri[9 * t + 4], tri[9 * t + 7]) - at[1]) / unit
+        hz = (max(tri[9 * t + 2], tri[9 * t + 5], tri[9 * t + 8]) - at[2]) / unit
+        todo[0] = 0
+        todo[1] = 0
+        height = 1
+        while height > 0:
+            height -= 1
+            k = todo[2 * height]
+            deep = todo[2 * height + 1]
+            near = holder(keys, n, k, near)
+            x = gathered_thrice(k)
+            y = gathered_thrice(k >> 1)
+            z = gathered_thrice(k >> 2)
+            if levels[near] <= deep:
+                mark_leaf(
+                    near,
+                    x,
+                    y,
+                    z,
+                    1 << (DEEP - deep),
+                    at,
+                    tri,
+                    t,
+                    share,
+                    corner,
+                    centre_flag,
+                    corner_flag,
+                )
+                continue
+            half = 1 << (DEEP - deep - 1)
+            reach = share * half
+            for c in range(8):
+                u = x + (c & 1) * half
+                v = y + ((c >> 1) & 1) * half
+                w = z + (c >> 2) * half
+                if (
+                    lx <= u + half + reach
+                    and hx >= u - reach
+                    and ly <= v + half + reach
+                    and hy >= v - reach
+                    and lz <= w + half + reach
+                    and hz >= w - reach
+                ):
+                    todo[2 * height] = k + (c << (3 * (DEEP - deep - 1)))
+                    todo[2 * height + 1] = deep + 1
+                    height += 1
+
+
+@njit(**HELPER)
+def mark_leaf(i, x, y, z, size, at, tri, t, share, corner, centre_flag, corner_flag):
+    """Mark the centre and the corners of one leaf by one triangle."""
+    unit = at[3]
+    side = size * unit
+    cx = at[0] + (x + 0.5 * size) * unit
+    cy = at[1] + (y + 0.5 * size) * unit
+    cz = at[2] + (z + 0.5 * size) * unit
+    square = square_distance(tri, t, cx, cy, cz)
+    reach = share * side
+    if square < reach * reach:
+        centre_flag[i] = 1
+    far = reach + 0.8660254037844387 * side
+    if square >= far * far:
+        return
+    for c in range(8):
+        j = corner[8 * i + c]
+        if corner_flag[j] != 0:
+            continue
+        px = cx + ((c & 1) - 0.5) * side
+        py = cy + (((c >> 1) & 1) - 0.5) * side
+        pz = cz + ((c >> 2) - 0.5) * side
+        if square_distance(tri, t, px, py, pz) < reach * reach:
+            corner_flag[j] = 1
+
+
+@njit(**HELPER)
+def root_of(parent, i):
+    """Representative of i, halving the path to it."""
+    while parent[i] != i:
+        parent[i] = parent[parent[i]]
+        i = parent[i]
+    return i
+
+
+@njit(**ENTRY)
+def join_leaves(leaf_corner, near_centre, near_corner, parent):
+    """Join centres (first) and corners (then) of one leaf that are not near; lowest number leads.
+
+    Afterwards parent leads straight to the representative.
+    """
+    corner = pointer(leaf_corner)
+    centre_flag = pointer(near_centre)
+    corner_flag = pointer(near_corner)
+    lead = pointer(parent)
+    n = near_centre.shape[0]
+    for i in range(parent.shape[0]):
+        lead[i] = i
+    for i in range(n):
+        if centre_flag[i] != 0:
+            continue
+        for c in range(8):
+            j = corner[8 * i + c]
+            if corner_flag[j] == 0:
+                a = root_of(lead, i)
+                b = root_of(lead, n + j)
+                if a < b:
+                    lead[b] = a
+                else:
+                    lead[a] = b
+    for i in range(parent.shape[0]):
+        lead[i] = root_of(lead, i)
+
+
+@njit(**HELPER)
+def side_of_edge(tri, o, p, q, x, y, tail_first):
+    """+1 where (x, y), displaced by (e, e²), lies left of an edge seen from above, -1 right."""
+    if not tail_first:
+        p, q = q, p
+    dx = tri[o + q] - tri[o + p]
+    dy = tri[o + q + 1] - tri[o + p + 1]
+    value = dx * (y - tri[o + p + 1]) - dy * (x - tri[o + p])
+    if value == 0.0:
+        value = -dy
+    if value == 0.0:
+        value = dx
+    sign = 1 if value > 0.0 else (-1 if value < 0.0 else 0)
+    return sign if tail_first else -sign
+
+
+@njit(**ENTRY)
+def wind_around(triangles, number, begin, end, points, out):
+    """Add to the winding numbers of a closed surface around points, by rays upwards.
+
+    triangles: (m, 9) coordinates; number: (m, 3) points, so that both triangles of an edge see it
+    from the same end.
+    """
+    tri = pointer(triangles)
+    name = pointer(number)
+    xyz = pointer(points)
+    turns = pointer(out)
+    for i in range(begin, end):
+        x = xyz[3 * i]
+        y = xyz[3 * i + 1]
+        z = xyz[3 * i + 2]
+        for t in range(triangles.shape[0] // 9):
+            o = 9 * t
+            if tri[o] < x and tri[o + 3] < x and tri[o + 6] < x:
+                continue
+            if tri[o] > x and tri[o + 3] > x and tri[o + 6] > x:
+                continue
+            if tri[o + 1] < y and tri[o + 4] < y and tri[o + 7] < y:
+                continue
+            if tri[o + 1] > y and tri[o + 4] > y and tri[o + 7] > y:
+                continue
+            if tri[o + 2] < z and tri[o + 5] < z and tri[o + 8] < z:
+                continue
+            a = side_of_edge(tri, o, 0, 3, x, y, name[3 * t] < name[3 * t + 1])
+            b = side_of_edge(tri, o, 3, 6, x, y, name[3 * t + 1] < name[3 * t + 2])
+            c = side_of_edge(tri, o, 6, 0, x, y, name[3 * t + 2] < name[3 * t])
+            if a == 0 or a != b or b != c:
+                continue
+            ux = tri[o + 3] - tri[o]
+            uy = tri[o + 4] - tri[o + 1]
+            uz = tri[o + 5] - tri[o + 2]
+            vx = tri[o + 6] - tri[o]
+            vy = tri[o + 7] - tri[o + 1]
+            vz = tri[o + 8] - tri[o + 2]
+            nx = uy * vz - uz * vy
+            ny = uz * vx - ux * vz
+            nz = ux * vy - uy * vx
+            above = (tri[o] - x) * nx + (tri[o + 1] - y) * ny + (tri[o + 2] - z) * nz
+            if (above >= 0.0) == (nz > 0.0):
+                turns[i] += a
+
+
+@njit(**ENTRY)
+def list_lattice(key, level, box, leaf_corner, corner, inside, centre_number, corner_number, out):
+    """Number the centres and corners inside, leaf by leaf, and write where they are; how many.
+
+    inside: by centres and then corners. Numbers are -1 for those outside.
+    """
+    keys = pointer(key)
+    levels = pointer(level)
+    at = pointer(box)
+    corners = pointer(leaf_corner)
+    place = pointer(corner)
+    flag = pointer(inside)
+    of_centre = pointer(centre_number)
+    of_corner = pointer(corner_number)
+    to = pointer(out)
+    n = key.shape[0]
+    m = 0
+    for j in range(corner_number.shape[0]):
+        of_corner[j] = -1
+    for i in range(n):
+        half = 0.5 * (1 << (DEEP - levels[i]))
+        of_centre[i] = -1
+        if flag[i] != 0:
+            of_centre[i] = m
+            for d in range(3):
+                to[3 * m + d] = at[d] + (gathered_thrice(keys[i] >> d) + half) * at[3 + d]
+            m += 1
+        for c in range(8):
+            j = corners[8 * i + c]
+            if flag[n + j] != 0 and of_corner[j] < 0:
+                of_corner[j] = m
+                for d in range(3):
+                    to[3 * m + d] = at[d] + place[3 * j + d] * at[3 + d]
+                m += 1
+    return m
+
+
+@njit(**ENTRY)
+def beside(key, level, begin, end, out):
+    """Leaves of the same size across each side, (n, 6): -x, +x, -y, ...; else NONE or FINER."""
+    keys = pointer(key)
+    levels = pointer(level)
+    to = pointer(out)
+    n = key.shape[0]
+    for i in range(begin, end):
+        size = 1 << (DEEP - levels[i])
+        x = gathered_thrice(keys[i])
+        y = gathered_thrice(keys[i] >> 1)
+        z = gathered_thrice(keys[i] >> 2)
+        for d in range(6):
+            step = size if d & 1 else -size
+            u = x + (step if d >> 1 == 0 else 0)
+            v = y + (step if d >> 1 == 1 else 0)
+            w = z + (step if d >> 1 == 2 else 0)
+            found = NONE
+            if is_within(u, v, w):
+                j = holder(keys, n, octant_key(u, v, w), i)
+                if levels[j] == levels[i]:
+                    found = j
+                elif levels[j] > levels[i]:
+                    found = FINER
+            to[6 * i + d] = found
+
+
+@njit(**ENTRY)
+def keep_tetrahedra(next_to, leaf_corner, centre_number, corner_number, begin, end, m, out):
+    """Write the regular tetrahedra of leaves `begin` to `end` that are strictly Delaunay.
+
+    Each has the centres of two leaves and an edge of the side between them. It is kept if the four
+    leaves around the edge are equal, none beyond the edge's ends is smaller, and the far corners of
+    its four neighbours are inside: then its circumsphere holds no point of the lattice nor, where
+    near means 0.559 of a side or more, of the surface. Returns how many there are then.
+    """
+    beside_of = pointer(next_to)
+    corner = pointer(leaf_corner)
+    of_centre = pointer(centre_number)
+    of_corner = pointer(corner_number)
+    to = pointer(out)
+    for i in range(begin, end):
+        if of_centre[i] < 0:
+            continue
+        for d in range(3):
+            j = beside_of[6 * i + 2 * d + 1]
+            if j < 0 or of_centre[j] < 0:
+                continue
+            # The side's corners, counterclockwise seen from leaf j: along e, then along f.
+            e = (d + 1) % 3
+            f = (d + 2) % 3
+            low = 1 << d
+            a = of_corner[corner[8 * i + low]]
+            b = of_corner[corner[8 * i + low + (1 << e)]]
+            g = of_corner[corner[8 * i + low + (1 << e) + (1 << f)]]
+            h = of_corner[corner[8 * i + low + (1 << f)]]
+            if a < 0 or b < 0 or g < 0 or h < 0:
+                continue
+            for k in range(4):
+                # Sides of the face in turn: at low f, high e, high f, low e.
+                across = f if k & 1 == 0 else e
+                along = e if k & 1 == 0 else f
+                way = 2 * across + (1 if k == 1 or k == 2 else 0)
+                p = beside_of[6 * i + way]
+                q = beside_of[6 * j + way]
+                if p < 0 or q < 0 or of_centre[p] < 0 or of_centre[q] < 0:
+                    continue
+                if (
+                    beside_of[6 * i + 2 * along] == FINER
+                    or beside_of[6 * i + 2 * along + 1] == FINER
+                    or beside_of[6 * j + 2 * along] == FINER
+                    or beside_of[6 * j + 2 * along + 1] == FINER
+                ):
+                    continue
+                tail = a if k == 0 else (b if k == 1 else (g if k == 2 else h))
+                head = b if k == 0 else (g if k == 1 else (h if k == 2 else a))
+                to[4 * m] = of_centre[i]
+                to[4 * m + 1] = tail
+                to[4 * m + 2] = head
+                to[4 * m + 3] = of_centre[j]
+                m += 1
+    return m

@@ -1,0 +1,1 @@
+"""Cells of solids from an octree: sizes, lattice and mesher."""
