@@ -116,6 +116,11 @@ _HOME = {
     "mark_edges": "tetrahedra.recovery",
     "recover_triangles": "tetrahedra.recovery",
     "find_containing": "tetrahedra.locating",
+    "fill_buckets": "hexahedra.nearest",
+    "nearest_faces": "hexahedra.nearest",
+    "least_corners": "hexahedra.nearest",
+    "relax": "hexahedra.relaxing",
+    "least_determinant": "hexahedra.relaxing",
 }
 
 #: Loading a module sets numba's cache directory for a while, which all threads share.
