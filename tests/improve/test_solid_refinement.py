@@ -161,8 +161,12 @@ def test_the_same_bytes_every_time() -> None:
 
 def test_refused_with_the_rule() -> None:
     mesh = two_regions()
-    with pytest.raises(cm.InputError, match="in space all cells are refined or none; got cells="):
+    with pytest.raises(cm.InputError, match='some cells are refined by method="longest edge"'):
         cm.refine(mesh, cells=[0])
+    with pytest.raises(cm.InputError, match="refinement in space is for tetrahedra; this mesh hol"):
+        cm.refine(swept("wedges"), [0], "longest edge")
+    with pytest.raises(cm.InputError, match="cells must hold numbers from 0 to 1"):
+        cm.refine(mesh, [2], "longest edge")
     with pytest.raises(cm.InputError, match="newest vertex refinement is for plane meshes"):
         cm.refine(mesh, method="newest vertex")
     curved = cm.Mesh(np.eye(10, 3), {"tetra10": [range(10)]})

@@ -58,7 +58,10 @@ class ExactSurfaces:
         return _moved(out, known, self.surfaces.project(on[known], out[known]), self.nearest)
 
     def of_edges(
-        self, facet_edges: dict[str, np.ndarray], places: np.ndarray
+        self,
+        facet_edges: dict[str, np.ndarray],
+        places: np.ndarray,
+        wanted: np.ndarray | None = None,
     ) -> tuple[np.ndarray, np.ndarray]:
         """Places near those given of each edge (e, 3) on the surfaces of all facets around it.
 
@@ -67,6 +70,8 @@ class ExactSurfaces:
         facet_edges : dict of str to (f, k) int64
             Edges of each facet.
         places : (e, 3) float64
+        wanted : (e,) bool, optional
+            Edges that are asked for; the others stay. Default: all.
 
         Returns
         -------
@@ -83,7 +88,8 @@ class ExactSurfaces:
             for kind, edges in facet_edges.items()
         ]
         edge, on = np.divmod(np.unique(np.concatenate(keys)), n)
-        edge, on = edge[on > 0], on[on > 0] - 1
+        asked = (on > 0) if wanted is None else (on > 0) & wanted[edge]
+        edge, on = edge[asked], on[asked] - 1
         first = np.flatnonzero(np.diff(edge, prepend=-1))
         count = np.diff(np.append(first, len(edge)))
         single, several = first[count == 1], first[count > 1]

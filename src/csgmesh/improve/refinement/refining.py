@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from csgmesh.errors import InputError
+from csgmesh.improve.refinement.bisection import bisect_solid
 from csgmesh.improve.refinement.division import Division
 from csgmesh.improve.refinement.marks import marked_cells
 from csgmesh.improve.refinement.solid_templates import CELLS, FACETS
@@ -19,7 +20,7 @@ METHODS = ("red-green", "longest edge", "newest vertex")
 
 
 def refine(mesh: Mesh, cells: Any = None, method: str = "red-green") -> Mesh:
-    """Divide all cells of a mesh, or some of a plane mesh and what conformity asks for.
+    """Divide all cells of a mesh, or some and what conformity asks for.
 
     Every edge of a marked cell is halved. Facets keep their names, regions and curves, cells their
     region; new boundary vertices lie on the exact curve, as far from either end of their facet. A
@@ -30,8 +31,8 @@ def refine(mesh: Mesh, cells: Any = None, method: str = "red-green") -> Mesh:
     mesh : Mesh
         Of straight triangles, quads or both; in space of tetrahedra, hexahedra, wedges, pyramids.
     cells : array_like or mapping of str to array_like, optional
-        A mask or cell numbers, counted through all kinds, or either by kind. Default: all cells,
-        which in space is all there is.
+        A mask or cell numbers, counted through all kinds, or either by kind. Default: all cells.
+        In space some tetrahedra are refined by the method "longest edge".
     method : {"red-green", "longest edge", "newest vertex"}
         How cells are divided; the last two know triangles only.
 
@@ -70,10 +71,17 @@ def refine(mesh: Mesh, cells: Any = None, method: str = "red-green") -> Mesh:
 
     ``info["min_angle"]`` of the result says so, or what was reached where curves bend cells.
 
+    In space each tetrahedron, hexahedron or wedge becomes eight, each pyramid six and four
+    tetrahedra; a tetrahedron has descendants of three shapes at the most (Bey 1995), cut along its
+    shortest diagonal first. By "longest edge" tetrahedra become up to eight (Plaza and Carey 2000);
+    no bound on their angles is proved, and none was seen to fall far.
+
     Exceptions
     ----------
     A cell that an undone green pair was put together for names the pair's first as the parent of
-    all its children. Cells at curves are bent by as much as the curve strays from the chord.
+    all its children. Cells at curves are bent by as much as the curve strays from the chord. In
+    space a vertex that would turn a cell over stays on its chord; ``info["points_on_chords"]``
+    counts these.
 
     Termination
     -----------
@@ -89,6 +97,9 @@ def refine(mesh: Mesh, cells: Any = None, method: str = "red-green") -> Mesh:
        bisecting the longest side", Mathematics of Computation 29 (1975).
     .. [4] W. F. Mitchell, "A comparison of adaptive refinement techniques for elliptic problems",
        ACM Trans. Mathematical Software 15 (1989).
+    .. [5] J. Bey, "Tetrahedral grid refinement", Computing 55 (1995).
+    .. [6] A. Plaza, G. F. Carey, "Local refinement of simplicial grids based on the skeleton",
+       Applied Numerical Mathematics 32 (2000).
 
     Examples
     --------
@@ -103,7 +114,10 @@ def refine(mesh: Mesh, cells: Any = None, method: str = "red-green") -> Mesh:
     check_choice("method", method, METHODS, "refine")
     if mesh.dim == 3:
         _check_solid(mesh, cells, method)
-        return refine_solid(mesh)
+        if method == METHODS[0]:
+            return refine_solid(mesh)
+        every = np.arange(mesh.n_cells)
+        return bisect_solid(mesh, every if cells is None else marked_cells(mesh, cells))
     _check_kinds(mesh, method)
     marked = None if cells is None else marked_cells(mesh, cells)
     division = Division.of(mesh, method)
@@ -134,10 +148,18 @@ def _check_solid(mesh: Mesh, cells: Any, method: str) -> None:
             "meshes of space are refined while their cells are straight; this one holds "
             f"{', '.join(held)}: refine first, then elevate"
         )
-    if cells is not None:
-        raise InputError("in space all cells are refined or none; got cells=")
-    if method != METHODS[0]:
+    if method == "newest vertex":
         raise InputError(f"{method} refinement is for plane meshes; this one has dim 3")
+    if method == "longest edge" and set(mesh.cells) != {"tetra"}:
+        raise InputError(
+            f"{method} refinement in space is for tetrahedra; this mesh holds "
+            f"{', '.join(mesh.cells)}"
+        )
+    if cells is not None and method != "longest edge":
+        raise InputError(
+            'in space some cells are refined by method="longest edge", and by others all; got '
+            f"cells= and method={method!r}"
+        )
 
 
 def _check_kinds(mesh: Mesh, method: str) -> None:

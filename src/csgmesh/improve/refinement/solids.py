@@ -116,7 +116,7 @@ def _placed(
         joined = np.concatenate(points)
         moved = np.zeros(len(joined), bool)
         moved[n : n + len(held)] = np.concatenate([bent, pushed])
-        back = _around_bad_children(joined, children, moved)
+        back = around_bad_children(joined, children, moved)
         if not len(back):
             return joined, int(held.sum())
         held[back - n] = True
@@ -147,7 +147,7 @@ def _hexahedron_centres(
     return np.asarray(0.5 * faces - 0.25 * sides + 0.125 * corners)
 
 
-def _around_bad_children(points: np.ndarray, children: Arrays, moved: np.ndarray) -> np.ndarray:
+def around_bad_children(points: np.ndarray, children: Arrays, moved: np.ndarray) -> np.ndarray:
     """Moved points of children that are not positive all over, sorted."""
     back = [np.zeros(0, np.int64)]
     if not moved.any():
