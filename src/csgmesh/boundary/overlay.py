@@ -108,11 +108,12 @@ def _retriangulated(
     """Triangles of all sheets of a cluster, and for each a triangle of the same sheet."""
     used, local = np.unique(triangles, return_inverse=True)
     local = local.reshape(-1, 3)
-    _, sheet = np.unique(sheet, return_inverse=True)
     flat = _in_plane(points[used], local)
-    cells = _cells(flat, _outlines(local, sheet))
     a, b, c = (flat[local[:, k]] for k in range(3))
     way = _turn(a, b, c)
+    # A flap has one surface on both its sides: what faces the other way is another sheet.
+    _, sheet = np.unique(2 * sheet + (way > 0), return_inverse=True)
+    cells = _cells(flat, _outlines(local, sheet))
     forward = np.where((way > 0)[:, None], local, local[:, ::-1])
     corner = flat[forward]
     rows, parents = [], []

@@ -75,9 +75,9 @@ def evaluate_solid(shape: Any, deviation: float | None, snap: float | None) -> P
     points, triangles, surface, region, marker = canonical(
         settled.points, found.triangles, found.surface, found.region, marker
     )
-    points = project_vertices(points, triangles, surface, classes.surfaces)
+    points, surfaces = project_vertices(points, triangles, surface, classes.surfaces)
     used, number = np.unique(surface, return_inverse=True)
-    exact = classes.surfaces[used].transformed(frame.scale * np.eye(3), frame.centre)
+    exact = surfaces[used].transformed(frame.scale * np.eye(3), frame.centre)
     return Plc.build(
         points=points * frame.scale + frame.centre,
         facets=triangles,

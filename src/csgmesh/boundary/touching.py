@@ -292,7 +292,8 @@ def _diagonals(
     corner = points[triangles]
     normal = np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0])
     size = np.sqrt((normal * normal).sum(axis=1))
-    level = np.ones(len(pair), bool)
+    # Facets folded onto each other are in one plane, too.
+    level = (normal[one // 3] * normal[two // 3]).sum(axis=1) > 0.0
     for a, b in ((one, two), (two, one)):
         tip = points[triangles.ravel()[b - b % 3 + (b + 2) % 3]]
         height = ((tip - corner[a // 3, 0]) * normal[a // 3]).sum(axis=1)

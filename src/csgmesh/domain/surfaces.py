@@ -152,6 +152,12 @@ class Surfaces:
         length = np.sqrt((out**2).sum(axis=1))
         return out / np.where(length > 0.0, length, 1.0)[:, None]
 
+    def parameters(self, i: np.ndarray, points: np.ndarray) -> np.ndarray:
+        """Parameters on the profiles of curved surfaces `i` (k,) nearest to points near them."""
+        q = self._canonical(i, np.asarray(points, float))
+        turned = np.column_stack([np.hypot(q[:, 0], q[:, 1]), q[:, 2]])
+        return self._parameter(i, np.where((self.kind[i] == REVOLVED)[:, None], turned, q[:, :2]))
+
     def distance(self, i: np.ndarray, points: np.ndarray) -> np.ndarray:
         """Distance of points from their projections, (k,)."""
         return np.sqrt(((self.project(i, points) - points) ** 2).sum(axis=1))
