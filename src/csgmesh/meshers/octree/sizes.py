@@ -57,7 +57,7 @@ class SpaceSizes:
     >>> domain = cm.evaluate(cm.Box((0, 0, 0), (1, 1, 1)))
     >>> SpaceSizes.of(domain, {"box.left": 0.05, "default": 0.2}, 0.3, 10**6)(
     ...     np.array([[0.0, 0.5, 0.5], [0.3, 0.5, 0.5], [1.0, 0.5, 0.5]])).round(2)
-    array([0.05, 0.13, 0.2 ])
+    array([0.05, 0.15, 0.2 ])
     """
 
     domain: Plc
