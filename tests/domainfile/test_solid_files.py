@@ -81,3 +81,41 @@ def test_an_unknown_argument_is_shown_at_its_place(tmp_path):
         load(tmp_path, "ball", "center: [0, 0, 0], radios: 1")
     with pytest.raises(cm.DomainFileError, match=r":4:\d+: key 'radius' is missing|'radius'"):
         load(tmp_path, "ball", "center: [0, 0, 0]")
+
+
+def test_shapes_from_other_programs(tmp_path):
+    (tmp_path / "part.csg").write_text(
+        "difference() { cube(size = [4, 4, 4], center = true);\n"
+        "cylinder($fn = 20, h = 9, r1 = 1, r2 = 1, center = true); }"
+    )
+    cm.write(tmp_path / "block.stl", cm.generate(cm.Box((0, 0, 0), (1, 1, 1)), cm.Sweep(), size=1))
+    path = tmp_path / "solid.yaml"
+    text = (
+        "csgmesh: 1\n"
+        "shapes:\n"
+        "  part: {read_shape: part.csg}\n"
+        "  block: {read_shape: {path: block.stl, split_angle: 30}, translate: [9, 0, 0]}\n"
+        "domain: {union: [part, block]}\n"
+    )
+    path.write_text(text)
+    domain = cm.evaluate(cm.load(path).shape, deviation=1e-4)
+    assert domain.volumes()[0] == pytest.approx(64 - 4 * 3.14159265 + 1, rel=1e-3)
+    assert {"part.box.left", "part.cylinder.side", "block.block.face6"} <= set(domain.names)
+    for before, after, said in (
+        (
+            "read_shape: part.csg",
+            "read_shape: ../part.csg",
+            "3:22: path must be a file in the fold",
+        ),
+        ("read_shape: part.csg", "read_shape: none.csg", "3:10: .*there is no such file"),
+        ("read_shape: part.csg", "read_shape: {path: part.csg, facets_below: 1.5}", "3:"),
+        ("split_angle: 30", "split_angle: 200", "4:.*split_angle must be more than 0"),
+        ("split_angle: 30", "facets_below: 3", "4:.*no option 'facets_below'"),
+    ):
+        path.write_text(text.replace(before, after))
+        with pytest.raises(cm.DomainFileError, match=said):
+            cm.load(path)
+    (tmp_path / "part.csg").write_text("cube(size = 1);\nminkowski() { }")
+    path.write_text(text)
+    with pytest.raises(cm.DomainFileError, match=r"part\.csg:2: minkowski is not supported"):
+        cm.load(path)

@@ -18,6 +18,7 @@ from csgmesh.domainfile.vocabulary import (
     embedded_kinds,
     meshers,
     primitives,
+    read_arguments,
     swept,
     transformations,
 )
@@ -26,7 +27,7 @@ from csgmesh.domainfile.vocabulary import (
 DIALECT = "https://json-schema.org/draft/2020-12/schema"
 
 
-_SHAPES = (*BOOLEANS, "shape", "complement")
+_SHAPES = (*BOOLEANS, "shape", "read_shape", "complement")
 _WHOLES = ("regions", "embed", "periodic")
 
 
@@ -157,6 +158,7 @@ def file_model() -> Any:
     kinds = {key: _optional(model) for key, model in primitives().items()}
     kinds |= {key: _optional(_list_of(reference)) for key in BOOLEANS}
     kinds["shape"] = _optional(reference, "A shape by name, or one to transform further")
+    kinds["read_shape"] = _optional(read_arguments(), "A shape from another program's file")
     beside = {key: _optional(model) for key, model in transformations().items()}
     beside["complement"] = _optional(
         Annotated[reference, OR_FLAG], "true beside a shape, or the shape itself"

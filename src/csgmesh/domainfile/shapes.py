@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterator, Mapping
 from functools import partial
+from pathlib import Path
 from typing import Any
 
 from csgmesh.csg import Embed, Periodic, Regions
@@ -126,6 +127,8 @@ class Builder:
         value = getattr(part, source)
         if source in Primitive.kinds and source not in swept():
             return self._call(Primitive.kinds[source], value, place)
+        if source == "read_shape":
+            return self._read(value, place)
         operands = [self.shape(operand, path + step) for step, operand in part.operands()]
         if source in BOOLEANS:
             return self._combined(source, operands, place)
@@ -143,8 +146,22 @@ class Builder:
             return self._at(place, lambda: Primitive.kinds[source](**arguments))
         return operands[0]
 
-    def _combined(self, operation: Any, operands: list[Shape], path: KeyPath) -> Shape:
-        leaves = sum(operand.n_leaves for operand in operands)
+    def _read(self, arguments: Arguments, path: KeyPath) -> Shape:
+        from csgmesh.io import read_shape
+
+        given = arguments.given()
+        name = given.pop("path")
+        # A file from strangers reads beside itself and nowhere else.
+        file = Path(name)
+        if file.is_absolute() or ".." in file.parts or not file.name:
+            message = f"path must be a file in the folder of the domain file, not {name!r}"
+            raise self.document.error(message, (*path, "path"))
+        folder = Path(self.document.file).parent
+        shape: Shape = self._at(path, lambda: read_shape(folder / file, **given))
+        self._few_leaves(shape.n_leaves, path)
+        return shape
+
+    def _few_leaves(self, leaves: int, path: KeyPath) -> None:
         if leaves > self.limits.leaves:
             raise self.document.error(
                 f"a shape may have at most {self.limits.leaves} leaves (limit leaves), "
@@ -152,6 +169,9 @@ class Builder:
                 path,
                 key=True,
             )
+
+    def _combined(self, operation: Any, operands: list[Shape], path: KeyPath) -> Shape:
+        self._few_leaves(sum(operand.n_leaves for operand in operands), path)
         return self._at(path, lambda: combined(operation, operands))
 
     def regions(self, shapes: Mapping[str, Shape], path: KeyPath) -> Regions:

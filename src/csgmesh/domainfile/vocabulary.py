@@ -13,7 +13,7 @@ from pydantic import Field, create_model
 from csgmesh.csg import EmbeddedPath, EmbeddedPoints
 from csgmesh.csg.nodes import SYMBOLS, Primitive, Shape
 from csgmesh.domainfile.alternatives import NestedShape
-from csgmesh.domainfile.fields import Count, Whole, field_type
+from csgmesh.domainfile.fields import Count, Number, Text, Whole, field_type
 from csgmesh.domainfile.parts import Part
 
 #: Booleans, each of a list of shapes.
@@ -159,6 +159,20 @@ def transformations() -> Mapping[str, type[Arguments]]:
 
 def _summary(function: Callable[..., Any]) -> str:
     return (inspect.getdoc(function) or "").split("\n\n")[0].replace("\n", " ")
+
+
+@cache
+def read_arguments() -> type[Arguments]:
+    """Model of the arguments of `read_shape`."""
+    return create_model(
+        "ReadShapeArguments",
+        __base__=Arguments,
+        __doc__="A shape in another program's file, in the folder of the domain file.",
+        path=(Text, Field()),
+        name=(Text, Field(default=None)),
+        split_angle=(Number, Field(default=None)),
+        facets_below=(Whole, Field(default=None)),
+    )
 
 
 #: Classes of what can be embedded, by key.
