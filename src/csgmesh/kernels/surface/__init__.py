@@ -1,0 +1,1 @@
+"""Kernels that mesh surfaces in space: exact surfaces, flips, splits, collapses, smoothing."""
