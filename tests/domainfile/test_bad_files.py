@@ -180,7 +180,7 @@ BAD = {
     "expected a word": (PLATE + "expect: {area: large}\n", 3, 16, "a comparison such as"),
     "expected a triple": (PLATE + "expect: {cells: [1, 2, 3]}\n", 3, 17, "[lowest, highest]"),
     "expected backwards": (PLATE + "expect: {cells: [3, 1]}\n", 3, 17, "not [3, 1]"),
-    "expected unknown": (PLATE + "expect: {aera: 1}\n", 3, 10, "did you mean 'area'?"),
+    "expected unknown": (PLATE + "expect: {aera: 1}\n", 3, 10, "did you mean 'area'"),
     "expected of a boundary": (
         PLATE + "expect: {boundary: {box: {lenght: 4}}}\n", 3, 27, "did you mean 'length'?",
     ),

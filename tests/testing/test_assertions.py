@@ -156,3 +156,21 @@ def test_a_missing_arc_is_noticed(plate: cm.Mesh) -> None:
     )  # fmt: skip
     with pytest.raises(AssertionError, match=r"boundary\.hole\.length"):
         assert_matches(part, {"boundary": {"hole": {"length": math.pi}}})
+
+
+def test_solids_have_volumes_and_areas() -> None:
+    pipe = cm.Extrude(cm.Disk((0, 0), 1, name="outer") - cm.Disk((0, 0), 0.5, name="bore"), 2)
+    mesh = cm.generate(pipe, cm.Sweep(), size=0.25)
+    side = "extrude.side.bore"
+    exact = {"volume": 1.5 * math.pi, "boundary": {side: {"area": 2 * math.pi}}, "min_dihedral": 30}
+    assert_matches(mesh, exact)
+    assert_matches(mesh, {"regions": {mesh.region_names[0]: {"volume": 1.5 * math.pi}}})
+    for wrong, said in (
+        ({"volume": 1.45 * math.pi}, "volume: 4.6"),
+        ({"boundary": {side: {"area": 1.98 * math.pi}}}, f"boundary.{side}.area: 6.2"),
+        ({"min_dihedral": ">= 75"}, "min_dihedral: "),
+        ({"min_angle": 20}, "min_angle: a mesh of space has none"),
+        ({"area": 3.0}, "plane mesh"),
+    ):
+        with pytest.raises((AssertionError, cm.InputError), match=said):
+            assert_matches(mesh, wrong)

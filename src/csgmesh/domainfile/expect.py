@@ -12,6 +12,7 @@ from csgmesh.domain.input_angles import ANGLE_ROUNDING
 from csgmesh.domain.names import find_names
 from csgmesh.domainfile.conditions import Condition
 from csgmesh.domainfile.exact import Measured, boundary_length, covered_area
+from csgmesh.domainfile.exact_space import boundary_area, filled_volume
 from csgmesh.domainfile.fields import Expected, Positive, Text, ValidationContext
 from csgmesh.domainfile.parts import Part, problems_of
 from csgmesh.errors import InputError, NameLookupError
@@ -22,7 +23,8 @@ from csgmesh.tolerance import EXPECTED_SHARE
 class ExpectedBoundary(Part):
     """What is expected of a boundary, an interface or an embedded path."""
 
-    length: Expected | None = Field(None, description="Exact length")
+    length: Expected | None = Field(None, description="Exact length, in the plane")
+    area: Expected | None = Field(None, description="Exact area, in space")
     facets: Expected | None = Field(None, description="Number of facets")
     tolerance: Positive | None = Field(None, description="Largest difference from the chords")
 
@@ -30,7 +32,8 @@ class ExpectedBoundary(Part):
 class ExpectedRegion(Part):
     """What is expected of a region."""
 
-    area: Expected | None = Field(None, description="Exact area")
+    area: Expected | None = Field(None, description="Exact area, in the plane")
+    volume: Expected | None = Field(None, description="Exact volume, in space")
     cells: Expected | None = Field(None, description="Number of cells")
     tolerance: Positive | None = Field(None, description="Largest difference from the chords")
 
@@ -38,14 +41,18 @@ class ExpectedRegion(Part):
 class Expect(Part):
     """What is expected of a mesh: a geometry regression test.
 
-    A number for a length or an area is its exact value: a mesh passes if its exact curves have it
-    within what these and their chords differ by, or, where a tolerance is given, if its chords have
-    it within that. A number for `min_angle` (`max_angle`) is the smallest (largest) allowed.
+    A number for a length, an area or a volume is its exact value: a mesh passes if its exact curves
+    have it within what these and their chords differ by, and in space if its facets have it within
+    what these and their surfaces differ by; or, where a tolerance is given, if its chords or facets
+    have it within that. A number for `min_angle` (`max_angle`) is the smallest (largest) allowed.
     """
 
-    area: Expected | None = Field(None, description="Exact area of the domain")
+    area: Expected | None = Field(None, description="Exact area of the domain, in the plane")
+    volume: Expected | None = Field(None, description="Exact volume of the domain, in space")
     min_angle: Expected | None = Field(None, description="Smallest angle in degrees")
     max_angle: Expected | None = Field(None, description="Largest angle in degrees")
+    min_dihedral: Expected | None = Field(None, description="Smallest dihedral angle in degrees")
+    max_dihedral: Expected | None = Field(None, description="Largest dihedral angle in degrees")
     cells: Expected | None = Field(None, description="Number of cells")
     points: Expected | None = Field(None, description="Number of points")
     boundary: dict[str, ExpectedBoundary] = Field({}, description="By name, prefix or glob")
@@ -54,7 +61,7 @@ class Expect(Part):
         None, description="Names, prefixes or globs that together cover all boundary names"
     )
     tolerance: Positive | None = Field(
-        None, description="Largest difference from the mesh's lengths and areas"
+        None, description="Largest difference from the mesh's lengths, areas and volumes"
     )
 
 
@@ -118,6 +125,8 @@ def _mismatches(mesh: Mesh, expect: Expect) -> Iterator[Mismatch]:
     common = expect.tolerance
     if expect.area is not None:
         yield from _measure(("area",), covered_area(mesh), expect.area, common)
+    if expect.volume is not None:
+        yield from _measure(("volume",), filled_volume(mesh), expect.volume, common)
     yield from _angles(mesh, expect)
     for what, value in (("cells", mesh.n_cells), ("points", mesh.n_points)):
         yield from _count((what,), value, getattr(expect, what))
@@ -151,6 +160,8 @@ def _boundary(
     if wanted.length is not None:
         length = boundary_length(mesh, name)
         yield from _measure((*path, "length"), length, wanted.length, tolerance)
+    if wanted.area is not None:
+        yield from _measure((*path, "area"), boundary_area(mesh, name), wanted.area, tolerance)
     yield from _count((*path, "facets"), facets, wanted.facets)
 
 
@@ -160,6 +171,8 @@ def _region(
     cells = sum(len(rows) for rows in mesh.region(name).values())
     if wanted.area is not None:
         yield from _measure((*path, "area"), covered_area(mesh, name), wanted.area, tolerance)
+    if wanted.volume is not None:
+        yield from _measure((*path, "volume"), filled_volume(mesh, name), wanted.volume, tolerance)
     yield from _count((*path, "cells"), cells, wanted.cells)
 
 
@@ -208,25 +221,29 @@ def measure_mismatch(
 
 
 def _angles(mesh: Mesh, expect: Expect) -> Iterator[Mismatch]:
-    if expect.min_angle is None and expect.max_angle is None:
+    known = ("min_angle", "max_angle", "min_dihedral", "max_dihedral")
+    keys = [key for key in known if getattr(expect, key) is not None]
+    if not keys:
         return
     from csgmesh.measures import quality
 
-    # A mesher's angle of 30 degrees may be measured as 29.999999999999996.
     report = quality(mesh)
-    least, most = expect.min_angle, expect.max_angle
-    if least is not None:
-        if least.is_exact:
-            least = Condition(least.low, float("inf"))
-        smallest = float(report.min_angle.min())
-        if not (least.holds(smallest) or least.holds(smallest + ANGLE_ROUNDING)):
-            yield Mismatch(("min_angle",), f"min_angle: {smallest:.6g}, expected {least}")
-    if most is not None:
-        if most.is_exact:
-            most = Condition(float("-inf"), most.high)
-        largest = float(report.max_angle.max())
-        if not (most.holds(largest) or most.holds(largest - ANGLE_ROUNDING)):
-            yield Mismatch(("max_angle",), f"max_angle: {largest:.6g}, expected {most}")
+    for key in keys:
+        if not hasattr(report, key):
+            place = "the plane" if mesh.dim == 2 else "space"
+            yield Mismatch((key,), f"{key}: a mesh of {place} has none")
+            continue
+        # A mesher's angle of 30 degrees may be measured as 29.999999999999996.
+        wanted, is_least = getattr(expect, key), key.startswith("min")
+        if wanted.is_exact and is_least:
+            wanted = Condition(wanted.low, float("inf"))
+        elif wanted.is_exact:
+            wanted = Condition(float("-inf"), wanted.high)
+        values = getattr(report, key)
+        found = float(values.min() if is_least else values.max())
+        eased = found + (ANGLE_ROUNDING if is_least else -ANGLE_ROUNDING)
+        if not (wanted.holds(found) or wanted.holds(eased)):
+            yield Mismatch((key,), f"{key}: {found:.6g}, expected {wanted}")
 
 
 def name_mismatches(mesh: Mesh, names: list[str] | tuple[str, ...]) -> Iterator[Mismatch]:

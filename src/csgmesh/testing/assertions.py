@@ -112,8 +112,8 @@ def assert_matches(mesh: Mesh, expect: Mapping[str, Any]) -> None:
     ----------
     mesh : Mesh
     expect : mapping
-        With any of `area`, `min_angle`, `max_angle`, `cells`, `points`, `boundary`, `regions`,
-        `names`, `tolerance`; or `load(path).expect`.
+        With any of `area`, `volume`, `min_angle`, `max_angle`, `min_dihedral`, `max_dihedral`,
+        `cells`, `points`, `boundary`, `regions`, `names`, `tolerance`; or `load(path).expect`.
 
     Raises
     ------

@@ -12,10 +12,11 @@ from csgmesh.domain.windings import winding_numbers
 from csgmesh.measures.results import Certificate, Check, offenders
 from csgmesh.measures.rules.arrays import check_indices, check_points
 from csgmesh.measures.space.case import SpaceCase
-from csgmesh.measures.space.curved import facet_middles, tetra_bounds
+from csgmesh.measures.space.curved import tetra_bounds
 from csgmesh.measures.space.delaunay import are_oriented, check_delaunay
 from csgmesh.measures.space.jacobians import least_jacobians
 from csgmesh.measures.space.placement import misplaced_facets
+from csgmesh.measures.space.sags import facet_sags, triangle_areas
 from csgmesh.mesh import KINDS, Mesh
 from csgmesh.tolerance import AREA_SHARE, coordinate_ulp
 
@@ -183,10 +184,14 @@ def check_volume(case: SpaceCase) -> Check:
     n = len(case.mesh.region_names)
     given = np.bincount(case.cell_region[:-1], case.quality.volume, n)
     # Each facet may be off by its distance from the exact surface all over its area.
-    slack = float((_sags(case, curved=True)[case.triangles[:, 3]] * _areas(case)).sum())
+    slack = float(
+        (facet_sags(case, curved=True)[case.triangles[:, 3]] * triangle_areas(case)).sum()
+    )
     bent = domain.surfaces.kind[domain.facet_surface] != PLANE
     slack += domain.deviation * float(domain.facet_areas()[bent].sum())
-    slack += AREA_SHARE * domain.diagonal**3 + coordinate_ulp(points) * float(_areas(case).sum())
+    slack += AREA_SHARE * domain.diagonal**3 + coordinate_ulp(points) * float(
+        triangle_areas(case).sum()
+    )
     number = {name: k for k, name in enumerate(domain.region_names)}
     bad = [
         k
@@ -203,23 +208,6 @@ def check_volume(case: SpaceCase) -> Check:
     )
     note = f"cells fill {total:.12g}, the domain has {exact.sum():.12g}, chords allow {slack:.3g}"
     return Check.of(rule, case.mesh.n_cells, failures, note)
-
-
-def _areas(case: SpaceCase) -> np.ndarray:
-    a, b, c = (case.mesh.points[case.triangles[:, k]] for k in range(3))
-    return 0.5 * np.asarray(np.sqrt((np.cross(b - a, c - a) ** 2).sum(axis=1)))
-
-
-def _sags(case: SpaceCase, *, curved: bool = False) -> np.ndarray:
-    """A bound of the distance of each facet, flat or as curved as it is, from its surface, (f,)."""
-    middles = case.facet_places(np.arange(len(case.facets[0])))
-    if curved and "triangle6" in case.mesh.facets:
-        own = case.facet_kind == "triangle6"
-        middles[own] = facet_middles(case.mesh.points[case.mesh.facets["triangle6"]])
-    off = case.off_surfaces(middles[:, None])
-    # The middle of a facet is where it is furthest off, but for thin ones. A facet that has corners
-    # elsewhere fails for that, and must not excuse a wrong volume as well.
-    return np.where(case.corners_off <= case.tolerance, 2.0 * off, 0.0)
 
 
 def _in_other_regions(case: SpaceCase, points: np.ndarray, region: np.ndarray) -> np.ndarray:
@@ -248,7 +236,7 @@ def check_samples(case: SpaceCase) -> Check:
     region = np.asarray(case.contains(points))
     elsewhere = _in_other_regions(case, points, region)
     differ = np.flatnonzero((inside != (region >= 0)) | elsewhere)
-    near = 2.0 * (float(_sags(case).max(initial=0.0)) + case.domain.deviation)
+    near = 2.0 * (float(facet_sags(case).max(initial=0.0)) + case.domain.deviation)
     surfaces = case.domain.surfaces
     off = np.full(len(differ), np.inf)
     for s in range(len(surfaces)):
