@@ -56,6 +56,27 @@ def test_chords_stray_no_further():
     assert depth(points, triangles) <= 1.01 * depth(surface.points, surface.triangles)
 
 
+def sharpest(points, triangles):
+    """Smallest angle of triangles in space, degrees."""
+    corners, least = points[triangles], 180.0
+    for k in range(3):
+        u, v = (corners[:, (k + j) % 3] - corners[:, k] for j in (1, 2))
+        across = np.sqrt((np.cross(u, v) ** 2).sum(axis=1))
+        least = min(least, np.degrees(np.arctan2(across, (u * v).sum(axis=1))).min())
+    return least
+
+
+@pytest.mark.parametrize("make", [ball, box_around_ball])
+def test_triangles_of_the_surface_stay_well_shaped(make):
+    (*parts, surface), _ = make(0.2)
+    points, _, _, triangles, _ = improve_tetrahedra(*parts, surface, goal=30)
+    was = {tuple(row) for row in np.sort(parts[3]).tolist()}
+    assert any(tuple(row) not in was for row in np.sort(triangles).tolist())
+    assert (
+        sharpest(points, triangles) >= min(25, sharpest(surface.points, surface.triangles)) - 0.01
+    )
+
+
 def test_an_interface_is_kept_from_both_sides():
     (*parts, surface), _ = box_around_ball(0.25, keep_ball=True)
     before = as_mesh(parts, surface)

@@ -8,6 +8,9 @@ from csgmesh.domain.surface_mesh import SurfaceMesh
 
 #: Triangles keep this cosine to the exact normals at their corners: 60 degrees.
 UPRIGHT = 0.5
+#: Squared sine of the smallest angle that a moved triangle may have, 25 degrees, unless it had a
+#: smaller one.
+THIN = 0.1786
 
 
 class Chords:
@@ -92,10 +95,21 @@ class Chords:
             before = _heights(points[wishing[move]], end, normals[row, column], there)
             after = _heights(places[move], end, new, there)
             refused[move[after > np.maximum(before, self.limit[face[row]])]] = True
-        across = np.cross(ends[0] - places[move], ends[1] - places[move])
+        across, sharpest = _corners(places[move], *ends)
         size = np.sqrt((across**2).sum(axis=1))
         refused[move[(across * new).sum(axis=1) <= UPRIGHT * size]] = True
+        before = _corners(points[wishing[move]], *ends)[1]
+        refused[move[sharpest < np.minimum(before, THIN)]] = True
         return refused, row, column, new
+
+
+def _corners(a: np.ndarray, b: np.ndarray, c: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Normals of triangles (k, 3), twice their area long, and squared sines of smallest angles."""
+    across = np.cross(b - a, c - a)
+    lengths = np.stack([((p - q) ** 2).sum(axis=1) for p, q in ((b, a), (c, b), (a, c))])
+    # The smallest angle is opposite the shortest edge.
+    longer = lengths.prod(axis=0) / lengths.min(axis=0)
+    return across, (across**2).sum(axis=1) / longer
 
 
 def _heights(

@@ -20,8 +20,12 @@ Improved = tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray]
 USUAL_GOAL = 25.0
 #: A vertex stops moving where its worst angle is this much beyond the goal, degrees.
 EASE = 6.0
+#: Vertices come and go only for cells whose worst angle is below this share of the goal: they
+#: change the sizes, flips and moves do not.
+POOR = 0.72
 #: Passes that only flip and move; those after them put vertices in and take them out, too.
 FAST_PASSES = 2
+USUAL_PASSES = 4
 #: Rounds of a pass: cells are treated, then vertices slide along the surface.
 ROUNDS = 4
 
@@ -34,14 +38,15 @@ def improve_tetrahedra(
     face: np.ndarray,
     surface: SurfaceMesh,
     goal: float = USUAL_GOAL,
-    passes: int = FAST_PASSES,
+    passes: int = USUAL_PASSES,
     progress: Progress | None = None,
 ) -> Improved:
     """Raise the smallest dihedral angles of tetrahedra on a surface mesh, and lower the largest.
 
     The worst tetrahedra come first. The best flip at one of their edges or faces is done; where
     none helps, their vertices move to where the worst angle around them is best; from the third
-    pass on, edges are contracted or divided where that does not help either. Vertices on the
+    pass on, edges are contracted or divided where that does not help either and angles are below
+    0.72 of the goal. Vertices on the
     surface slide along their face or curve and are put on the exact surface; edges of the surface
     turn within a face. Only the cells around bad ones are looked at, so that time grows with their
     number.
@@ -63,8 +68,8 @@ def improve_tetrahedra(
     goal : float, default 25
         Angle in degrees, between 0 and 60, beyond which a tetrahedron is good enough. It counts at
         both ends: no angle is to be larger than its supplement.
-    passes : int, default 2
-        How often bad cells are gathered and treated.
+    passes : int, default 4
+        How often bad cells are gathered and treated, at most.
     progress : callable, optional
         Called as ``progress("improve", done, total)``.
 
@@ -85,8 +90,9 @@ def improve_tetrahedra(
     the rounding error of the triple product is not taken. No step lowers the worst angle around
     what it changes. Feature edges, regions and names stay; vertices of faces and curves lie on
     their exact surfaces. Chords of a face stray no further from its surface than the domain's
-    deviation or the longest that the face had before, by the exact normals at their ends. The same
-    input gives the same bytes.
+    deviation or the deepest that the face had before, by the exact normals at their ends. Angles of
+    the surface's triangles fall no lower than 25 degrees, or than what they were. The same input
+    gives the same bytes.
 
     Exceptions
     ----------
@@ -133,14 +139,17 @@ def improve_tetrahedra(
     tets = np.array(tets, dtype=np.int64)
     region = np.array(region, dtype=np.int64)
     chords = Chords(np.array(triangles, dtype=np.int64), np.array(face, dtype=np.int64), surface)
-    bar, easy = (_shape(angle) for angle in (goal, min(goal + EASE, 0.5 * (goal + 60.0))))
+    angles = np.array([goal, min(goal + EASE, 0.5 * (goal + 60.0)), POOR * goal])
+    bars = np.sin(np.radians(angles)) ** 2
     scores = shapes(points, tets)
     for number in range(passes):
-        if not (scores <= bar).any():
+        if not (scores <= bars[0]).any():
             break
-        piece = Piece(points, tets, region, scores, chords, bar, easy)
-        piece.work(ROUNDS, number >= FAST_PASSES, progress)
+        piece = Piece(points, tets, region, scores, chords, bars)
+        done = piece.work(ROUNDS, number >= FAST_PASSES, progress)
         points, tets, region, scores = piece.put_back(points, tets, region, scores)
+        if not done and number >= FAST_PASSES:
+            break
     points, tets = _without_unused(points, tets, surface.n_points)
     return points, tets, region, chords.triangles, chords.face
 
@@ -153,10 +162,6 @@ def shapes(points: np.ndarray, tets: np.ndarray) -> np.ndarray:
     while done < len(tets):
         done = kernels.score_cells(flat, corners, scores, done)
     return scores
-
-
-def _shape(angle: float) -> float:
-    return float(np.sin(np.radians(angle)) ** 2)
 
 
 def _without_unused(

@@ -36,8 +36,9 @@ class Piece:
         Shapes of the tetrahedra.
     chords : Chords
         The surface; its triangles change with the work.
-    bar, easy : float
-        Shape that cells are treated to reach, and shape where a vertex may stop moving.
+    bars : (3,) float64
+        Shape that cells are treated to reach, shape where a vertex may stop moving, and shape below
+        which vertices may come and go.
     """
 
     def __init__(
@@ -47,12 +48,11 @@ class Piece:
         region: np.ndarray,
         scores: np.ndarray,
         chords: Chords,
-        bar: float,
-        easy: float,
+        bars: np.ndarray,
     ) -> None:
         mark = np.zeros(len(points), np.int8)
         chosen = np.zeros(len(tets), np.int8)
-        kernels.choose_cells(tets.reshape(-1), scores, bar, mark, chosen)
+        kernels.choose_cells(tets.reshape(-1), scores, bars[0], mark, chosen)
         self.chords = chords
         self.chosen = chosen != 0
         self.vertices = np.flatnonzero(mark)
@@ -74,7 +74,7 @@ class Piece:
             limit=chords.limit,
             segment_begin=begin,
             segment=segment,
-            number=np.array([bar, easy]),
+            number=bars,
         )
 
     def _kinds(self, mark: np.ndarray) -> np.ndarray:
@@ -86,14 +86,19 @@ class Piece:
         kind[mark == OUTER] = FROZEN
         return kind
 
-    def work(self, rounds: int, thorough: bool, progress: Progress | None) -> None:
-        """Treat the bad cells, then let vertices slide along the surface, a few times."""
-        a = self.arrays
-        a.count[THOROUGH] = thorough
+    def work(self, rounds: int, thorough: bool, progress: Progress | None) -> int:
+        """Treat the bad cells, then let vertices slide along the surface, a few times.
+
+        Returns how often anything got better.
+        """
+        self.arrays.count[THOROUGH] = thorough
+        total = 0
         for _ in range(rounds):
             done = self._treat(progress) + self._slide()
+            total += done
             if not done or not len(self._bad()):
-                return
+                break
+        return total
 
     def _bad(self) -> np.ndarray:
         """Cells below the bar, the worst first."""

@@ -10,7 +10,7 @@ from csgmesh import kernels
 from csgmesh.domain.surface_mesh import ON_CURVE, ON_FACE, SurfaceMesh
 from csgmesh.improve.strata import strata_of
 from csgmesh.improve.tetrahedra.chords import Chords
-from csgmesh.improve.tetrahedra.improving import Progress, improve_tetrahedra, shapes
+from csgmesh.improve.tetrahedra.improving import FAST_PASSES, Progress, improve_tetrahedra, shapes
 from csgmesh.improve.tetrahedra.piece import DONE, NEXT, WISHES, Piece
 from csgmesh.mesh import Mesh
 
@@ -27,12 +27,14 @@ def smooth_tetrahedra(mesh: Mesh, method: str, sweeps: int, progress: Progress |
     triangles, face = np.array(surface.triangles), np.array(surface.face)
     if method == "optimize":
         points, tets, region, triangles, face = improve_tetrahedra(
-            points, tets, region, triangles, face, surface, progress=progress
+            *(points, tets, region, triangles, face, surface),
+            passes=FAST_PASSES,
+            progress=progress,
         )
     else:
         chords = Chords(triangles, face, surface)
         scores = shapes(points, tets)
-        piece = Piece(points, tets, region, scores, chords, _ALL, _ALL)
+        piece = Piece(points, tets, region, scores, chords, np.full(3, _ALL))
         _sweep(piece, surface, method == "odt", sweeps, progress)
         points = piece.put_back(points, tets, region, scores)[0]
     facets = {"triangle": order[triangles]} if "triangle" in mesh.facets else {}

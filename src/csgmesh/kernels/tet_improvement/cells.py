@@ -67,6 +67,7 @@ C_THOROUGH = 30  # whether vertices may come and go
 # Places in `number`.
 N_GOAL = 0  # cells this good are left alone
 N_EASY = 1  # a climb may end here
+N_POOR = 2  # only for cells that are worse vertices come and go
 
 #: Cells around a vertex, or in a cavity, at most; and faces that are matched.
 WIDEST = 96

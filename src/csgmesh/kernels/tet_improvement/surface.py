@@ -11,8 +11,9 @@ from .cells import C_EDGE, C_WALLS, ON_FACE
 
 #: A turned triangle keeps this cosine to the exact normals at its corners: 60 degrees.
 UPRIGHT = 0.5
-#: Squared sine of the smallest angle that a turned triangle may have, unless it had a smaller one.
-THIN = 0.1
+#: Squared sine of the smallest angle that a turned triangle may have, 25 degrees, unless it had a
+#: smaller one.
+THIN = 0.1786
 
 
 @njit(**HELPER)

@@ -19,6 +19,7 @@ from .cells import (
     FREE,
     FROZEN,
     N_GOAL,
+    N_POOR,
     ON_CURVE,
     ON_FACE,
     Piece,
@@ -96,7 +97,7 @@ def carry_out(view, m):
 
 @njit(**HELPER)
 def treat(view, t):
-    """Flip; else move the corners; else, if thorough, take a vertex out or put one in."""
+    """Flip; else move the corners; else, if thorough and poor, take a vertex out or put one in."""
     new_plan(view)
     m = plan_flip(view, t)
     if m < 0:
@@ -106,7 +107,7 @@ def treat(view, t):
                 gained = True
                 if view.score[t] > view.number[N_GOAL]:
                     return True
-        if gained or view.count[C_THOROUGH] == 0:
+        if gained or view.count[C_THOROUGH] == 0 or view.score[t] > view.number[N_POOR]:
             return gained
         new_plan(view)
         m = plan_contraction(view, t)
