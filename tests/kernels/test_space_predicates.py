@@ -50,6 +50,10 @@ def on_a_scaled_lattice(rng: np.random.Generator) -> np.ndarray:
     return rng.integers(0, 3, (5, 3)) / 7 + 0.1
 
 
+def on_an_exact_lattice(rng: np.random.Generator) -> np.ndarray:
+    return rng.integers(-4, 5, (5, 3)) * (2.0**-22 * 1048573)
+
+
 def on_a_large_lattice(rng: np.random.Generator) -> np.ndarray:
     return rng.integers(-1, 2, (5, 3)) * 2.0**40 + rng.integers(-1, 2, (5, 3))
 
@@ -85,6 +89,7 @@ def of_many_magnitudes(rng: np.random.Generator) -> np.ndarray:
         on_a_moved_sphere,
         on_a_lattice,
         on_a_scaled_lattice,
+        on_an_exact_lattice,
         on_a_large_lattice,
         an_ulp_apart,
         on_corners_of_a_box,

@@ -1,11 +1,11 @@
 """What is left of orientation and in-sphere tests when a filter cannot tell; exact signs.
 
 Stages, each entered only when the one before cannot tell: corners of boxes and rectangles parallel
-to the axes; small multiples of a power of two, for which plain arithmetic rounds nothing; about 32
-digits with a bound of their error; larger multiples, whose determinant is zero or above it;
-determinants of the coordinates themselves as expansions, after J. R. Shewchuk, "Adaptive precision
-floating-point arithmetic and fast robust geometric predicates", Discrete & Computational Geometry
-18 (1997).
+to the axes; small multiples of a power of two or of the smallest difference, for which plain
+arithmetic rounds nothing; about 32 digits with a bound of their error; larger multiples, whose
+determinant is zero or above it; determinants of the coordinates themselves as expansions, after
+J. R. Shewchuk, "Adaptive precision floating-point arithmetic and fast robust geometric predicates",
+Discrete & Computational Geometry 18 (1997).
 
 Both functions are compiled once and called by name from the machine code of every other kernel.
 """
@@ -15,7 +15,7 @@ from __future__ import annotations
 from numba import njit
 
 from ..exact import are_rectangle
-from ..expansions import add_expansions, cross, diff_tail, scale_expansion
+from ..expansions import add_expansions, cross, diff_tail, scale_expansion, two_product
 from ..pointers import HELPER, scratch
 from .doubled import add, minor, multiply, sum_of_products
 from .linking import name_function
@@ -46,6 +46,29 @@ def are_multiples(x, n, largest, parts):
     for i in range(n):
         rest += abs(((x[i] + magic) - magic) - x[i])
     return rest == 0.0
+
+
+@njit(**HELPER)
+def make_integers(d, n, largest, q):
+    """q: n doubles as multiples of a half or a third of the smallest one, if all are few."""
+    smallest = largest
+    for i in range(n):
+        if d[i] != 0.0:
+            smallest = min(smallest, abs(d[i]))
+    if largest > 0.5 * FEW * smallest:
+        return False
+    for parts in range(2, 4):
+        unit = smallest / parts
+        rest = 0.0
+        for i in range(n):
+            q[i] = ((d[i] / unit) + ROUNDING) - ROUNDING
+            p, error = two_product(q[i], unit)
+            rest += abs(p - d[i]) + abs(error)
+            if abs(q[i]) > FEW:
+                rest = 1.0
+        if rest == 0.0:
+            return True
+    return False
 
 
 @njit(**HELPER)
@@ -142,9 +165,13 @@ def orient3d_adaptive(ax, ay, az, bx, by, bz, cx, cy, cz, dx, dy, dz):
     x[3], y[3], z[3] = ax, ay, az
     d = scratch(9)
     t = scratch(9)
+    q = scratch(9)
     largest = take_differences(x, y, z, 3, d, t)
     det, size = determinant(d, 0, 1, 2)
     if largest >= 0.0 and (size == 0.0 or are_multiples(d, 9, largest, FEW)):
+        return det
+    if largest >= 0.0 and make_integers(d, 9, largest, q):
+        det, _ = determinant(q, 0, 1, 2)
         return det
     det, _ = long_determinant(d, t, 0, 1, 2)
     if abs(det) > DOUBLED * size:
@@ -225,6 +252,19 @@ def exact_insphere(x, y, z):
 
 
 @njit(**HELPER)
+def sphere_determinant(d):
+    """In-sphere determinant of differences in plain arithmetic, and its permanent."""
+    det = 0.0
+    size = 0.0
+    for i in range(4):
+        volume, share = determinant(d, 1 if i == 0 else 0, 2 if i <= 1 else 1, 3 if i <= 2 else 2)
+        lift = d[3 * i] * d[3 * i] + d[3 * i + 1] * d[3 * i + 1] + d[3 * i + 2] * d[3 * i + 2]
+        det += lift * (-volume if i & 1 else volume)
+        size += lift * share
+    return det, size
+
+
+@njit(**HELPER)
 def insphere_adaptive(ax, ay, az, bx, by, bz, cx, cy, cz, dx, dy, dz, ex, ey, ez):
     """In-sphere determinant of five points with an exact sign."""
     x = scratch(5)
@@ -239,15 +279,13 @@ def insphere_adaptive(ax, ay, az, bx, by, bz, cx, cy, cz, dx, dy, dz, ex, ey, ez
         return 0.0
     d = scratch(12)
     t = scratch(12)
+    q = scratch(12)
     largest = take_differences(x, y, z, 4, d, t)
-    det = 0.0
-    size = 0.0
-    for i in range(4):
-        volume, share = determinant(d, 1 if i == 0 else 0, 2 if i <= 1 else 1, 3 if i <= 2 else 2)
-        lift = d[3 * i] * d[3 * i] + d[3 * i + 1] * d[3 * i + 1] + d[3 * i + 2] * d[3 * i + 2]
-        det += lift * (-volume if i & 1 else volume)
-        size += lift * share
+    det, size = sphere_determinant(d)
     if largest >= 0.0 and (size == 0.0 or are_multiples(d, 12, largest, FEW)):
+        return det
+    if largest >= 0.0 and make_integers(d, 12, largest, q):
+        det, _ = sphere_determinant(q)
         return det
     det = 0.0
     low = 0.0

@@ -165,13 +165,20 @@ class SpaceSizes:
 
 
 def root_of(domain: Plc, uniform: float | None) -> LinearTree:
-    """A cube around a domain; leaves of some level have the side that fits a uniform size."""
+    """A cube around a domain; leaves of some level have the side that fits a uniform size.
+
+    The side is rounded to 20 bits and the corner to a 2^-12th of it: then no coordinate of the
+    lattice is rounded, and exact tests settle its many points on one sphere by plain arithmetic.
+    """
     low, high = domain.bounds()
     width = float((high - low).max())
     side = CUBE * (uniform if uniform is not None else 0.01 * width)
+    mantissa, exponent = np.frexp(side)
+    side = float(np.ldexp(np.round(mantissa * 2.0**20), exponent - 20))
     n = 2.0 ** np.ceil(np.log2(max(width / side + 2.0, 2.0)))
-    extent = np.full(3, n * side)
-    return LinearTree.root(0.5 * (low + high) - 0.5 * extent, extent)
+    unit = 2.0**-12 * side
+    corner = np.round((0.5 * (low + high) - 0.5 * n * side) / unit) * unit
+    return LinearTree.root(corner, np.full(3, n * side))
 
 
 def spread(tree: LinearTree, value: np.ndarray, gradation: float) -> np.ndarray:

@@ -80,7 +80,7 @@ class _Filling:
 
         A tetrahedralisation is Delaunay if each two neighbours are: only walls need a look.
         """
-        faces = self.net.faces(self.walls)
+        self.stops = faces = self.net.faces(self.walls)
         is_there = faces >= 0
         walls, owner = self.walls[is_there], self.kept.owner[is_there]
         apex = self.net.vert[self.net.across(walls, faces[is_there])]
@@ -103,7 +103,8 @@ class _Filling:
         for _ in range(_PASSES):
             if not len(missing) or not net.recover(np.vstack([triangles, self.walls]), missing):
                 break
-            missing = np.flatnonzero(net.faces(triangles) < 0)
+            found, self.stops = net.faces(triangles), net.faces(self.walls)
+            missing = np.flatnonzero(found < 0)
         if len(missing):
             return Tetrahedra(
                 self.points,
@@ -114,13 +115,12 @@ class _Filling:
                 missing,
                 self.points[triangles[missing]].mean(axis=1),
             )
-        return self._inside(triangles)
+        return self._inside(triangles, found)
 
-    def _inside(self, triangles: np.ndarray) -> Tetrahedra:
+    def _inside(self, triangles: np.ndarray, found: np.ndarray) -> Tetrahedra:
         """Tetrahedra of all regions."""
         net, kept, surface = self.net, self.kept, self.surface
-        stops = net.faces(self.walls)
-        label, status = net.flood(triangles, surface.region, stops)
+        label, status = net.flood(triangles, found, surface.region, self.stops)
         rows, is_cell = net.cells()
         if status != -1:
             if status >= 0:
@@ -129,9 +129,9 @@ class _Filling:
                 corners = net.order[rows[-2 - status, :3]]
                 place = self.points[self.used[corners[corners < len(self.used)]]].mean(axis=0)
             raise MeshingError(f"the surface does not part its regions near {_text(place)}")
-        triangles = self.used[peel(net, triangles, surface.face, surface.region, label)]
+        triangles = self.used[peel(net, triangles, found, surface.face, surface.region, label)]
         keep = np.flatnonzero(is_cell & (label >= 0))
-        outside = label[net.across(self.walls, stops) >> 2].astype(np.int64)
+        outside = label[net.across(self.walls, self.stops) >> 2].astype(np.int64)
         tets = np.empty((len(keep) + len(kept.tets), 4), np.int64)
         tets[: len(keep)] = self.used[net.order[rows[keep]]]
         tets[len(keep) :] = kept.tets

@@ -153,14 +153,16 @@ class Net:
         return out
 
     def flood(
-        self, triangles: np.ndarray, sides: np.ndarray, stops: np.ndarray
+        self, triangles: np.ndarray, where: np.ndarray, sides: np.ndarray, stops: np.ndarray
     ) -> tuple[np.ndarray, int]:
         """Region of each slot, -2 where no triangle leads, and what the kernel says.
 
         Parameters
         ----------
         triangles : (m, 3) int64
-            Walls, all of them faces.
+            Walls.
+        where : (m,) int64
+            Faces that these are.
         sides : (m, 2) int64
             Regions behind and in front of each.
         stops : (f,) int64
@@ -175,7 +177,7 @@ class Net:
             self.nei,
             wall,
             self.rank[triangles].reshape(-1),
-            self.faces(triangles),
+            where,
             stops,
             np.ascontiguousarray(sides, np.int64).reshape(-1),
             region,

@@ -22,7 +22,12 @@ _FACES = np.array([[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]])
 
 
 def peel(
-    net: Net, triangles: np.ndarray, face: np.ndarray, region: np.ndarray, label: np.ndarray
+    net: Net,
+    triangles: np.ndarray,
+    where: np.ndarray,
+    face: np.ndarray,
+    region: np.ndarray,
+    label: np.ndarray,
 ) -> np.ndarray:
     """Take flat tetrahedra off the outside; the surface's triangles.
 
@@ -30,14 +35,15 @@ def peel(
     ----------
     net : Net
     triangles : (m, 3) int64
-        All of them faces of the net.
+    where : (m,) int64
+        Faces of the net that these are.
     face : (m,) int64
     region : (m, 2) int64
         Behind and in front of each triangle.
     label : (n_slots,) int32
         Region of each slot; those that are taken away get -1.
     """
-    triangles, where = triangles.copy(), net.faces(triangles)
+    triangles, where = triangles.copy(), where.copy()
     points = net.xyz.reshape(-1, 3)
     flat = _FLAT * accuracy(ON_CURVE_SHARE, net.diagonal, points[net.order < net.n_points])
     n = len(triangles)
