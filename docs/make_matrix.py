@@ -22,7 +22,7 @@ import csgmesh as cm
 
 HERE = Path(__file__).parent
 SOLIDS = HERE.parent / "examples" / "solids.py"
-LONGEST = 600.0
+LONGEST = 300.0
 
 #: Wanted edge lengths: some ten thousand cells each.
 SIZES = {

@@ -20,7 +20,7 @@ def convex_area(disks):
     return ConvexHull(np.concatenate([np.array(c) + r * circle for c, r in disks])).volume
 
 
-@settings(max_examples=25)
+@settings(max_examples=15)
 @given(st.lists(st.tuples(st.tuples(SIDE, SIDE), SIZE), min_size=1, max_size=6))
 def test_a_hull_of_disks_is_exact(disks):
     hull = cm.Hull([cm.Disk(c, r) for c, r in disks])
