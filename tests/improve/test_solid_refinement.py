@@ -8,6 +8,7 @@ from solid_meshes import BALL, DOME, SWEPT, ball, dome, swept
 
 import csgmesh as cm
 from csgmesh.improve.refinement.solid_templates import CELLS
+from csgmesh.meshers.hexahedra import hexahedral_mesh
 
 
 @pytest.mark.parametrize("name", SWEPT)
@@ -84,6 +85,17 @@ def test_straight_cells_give_children_of_their_shape() -> None:
     mesh = cm.refine(cm.generate(box, cm.Sweep(cm.Structured(), layers=2), size=0.5))
     np.testing.assert_allclose(cm.quality(mesh).scaled_jacobian, 1.0, atol=1e-12)
     assert cm.quality(mesh).max_edge.max() == 0.25
+
+
+def test_hexahedra_of_a_grid_stay_as_good() -> None:
+    shape = cm.Box((0, 0, 0), (1, 1, 1)) - cm.Cylinder((0.5, 0.5, -1), (0.5, 0.5, 2), 0.25)
+    mesh = hexahedral_mesh(cm.evaluate(shape), lambda points: np.full(len(points), 0.16))
+    fine = cm.refine(mesh)
+    certificate = cm.check(fine, shape)
+    assert certificate.ok, certificate
+    assert fine.info["points_on_chords"] == 0
+    worst = [cm.quality(m).scaled_jacobian.min() for m in (mesh, fine)]
+    assert worst[1] > worst[0] - 1e-6
 
 
 def test_cells_know_their_parents_and_regions() -> None:

@@ -39,7 +39,11 @@ def flip_cell(rng, mesh):
     kind = a_kind(rng, mesh.cells)
     row = rng.integers(len(mesh.cells[kind]))
     cell = mesh.cells[kind][row].copy()
-    swapped = {"tetra": [0, 2, 1, 3], "hexahedron": [4, 5, 6, 7, 0, 1, 2, 3]}[kind]
+    swapped = {
+        "tetra": [0, 2, 1, 3],
+        "tetra10": [0, 2, 1, 3, 6, 5, 4, 7, 9, 8],
+        "hexahedron": [4, 5, 6, 7, 0, 1, 2, 3],
+    }[kind]
     return with_value(mesh, "cells", kind, row, cell[swapped])
 
 
@@ -261,6 +265,41 @@ def swap_boundary_names(rng, mesh):
     entries[i], entries[j] = entries[j], entries[i]
     return replace(mesh, boundary_names=entries)
 
+
+def lift_edge_node(rng, mesh):
+    """A billionth of the diagonal, off the surface that its edge is on."""
+    row = rng.choice(mesh.facets["triangle6"])
+    a, b, c = mesh.points[row[:3]]
+    normal = np.cross(b - a, c - a)
+    diagonal = np.sqrt((np.ptp(mesh.points, axis=0) ** 2).sum())
+    points = mesh.points.copy()
+    lift = rng.choice([-1, 1]) * 1e-9 * diagonal / np.sqrt((normal**2).sum())
+    points[rng.choice(row[3:])] += lift * normal
+    return replace(mesh, points=points)
+
+
+def throw_edge_node(rng, mesh):
+    """Of an inner edge, by the length of a cell."""
+    nodes = np.setdiff1d(mesh.cells["tetra10"][:, 4:], mesh.facets["triangle6"])
+    points = mesh.points.copy()
+    turn = rng.normal(size=3)
+    points[rng.choice(nodes)] += 0.5 * turn / np.sqrt((turn**2).sum())
+    return replace(mesh, points=points)
+
+
+def swap_edge_nodes(rng, mesh):
+    field, kind = [("cells", "tetra10"), ("facets", "triangle6")][rng.integers(2)]
+    rows = getattr(mesh, field)[kind]
+    row = rng.integers(len(rows))
+    nodes = rows[row].copy()
+    corners = KINDS[kind].n_corners
+    a, b = corners + rng.choice(len(nodes) - corners, 2, replace=False)
+    nodes[[a, b]] = nodes[[b, a]]
+    return with_value(mesh, field, kind, row, nodes)
+
+
+#: For curved tetrahedra.
+CURVED_MUTATIONS: tuple[Mutation, ...] = (lift_edge_node, throw_edge_node, swap_edge_nodes)
 
 MUTATIONS: tuple[Mutation, ...] = (
     flip_cell,

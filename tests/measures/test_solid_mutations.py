@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from solid_mutations import MUTATIONS
+from solid_mutations import CURVED_MUTATIONS, MUTATIONS
 
 import csgmesh as cm
 from csgmesh.measures.space.certificate import check_space
@@ -62,9 +62,9 @@ def _markers(plc, corners: np.ndarray, sides: np.ndarray) -> np.ndarray:
     return out
 
 
-def rod() -> cm.Mesh:
+def rod(size: float = 0.35, layers: int = 3) -> cm.Mesh:
     """Tetrahedra of a cylinder, from the wedges of a sweep."""
-    mesh = cm.generate(ROD, cm.Sweep(layers=3), size=0.35)
+    mesh = cm.generate(ROD, cm.Sweep(layers=layers), size=size)
     quads = mesh.facets["quad"]
     turn = (quads.argmin(axis=1)[:, None] + np.arange(4)) % 4
     quads = np.take_along_axis(quads, turn, axis=1)
@@ -82,14 +82,25 @@ def rod() -> cm.Mesh:
     )
 
 
-@pytest.mark.parametrize(("make", "shape"), [(blocks, BLOCKS), (rod, ROD)])
-def test_every_mutation_is_caught(make, shape) -> None:
+def curved() -> cm.Mesh:
+    return cm.elevate(rod(0.6, 2))
+
+
+@pytest.mark.parametrize(
+    ("make", "shape", "mutations"),
+    [
+        (blocks, BLOCKS, MUTATIONS),
+        (rod, ROD, MUTATIONS),
+        (curved, ROD, MUTATIONS + CURVED_MUTATIONS * 4),
+    ],
+)
+def test_every_mutation_is_caught(make, shape, mutations) -> None:
     mesh, reference = make(), cm.evaluate(shape)
     certificate = cm.check(mesh, shape)
     assert certificate.ok, certificate
     missed = []
     for seed in range(N_MUTATIONS // 2):
-        mutation = MUTATIONS[seed % len(MUTATIONS)]
+        mutation = mutations[seed % len(mutations)]
         try:
             spoiled = mutation(np.random.default_rng(seed), mesh)
         except cm.InputError:  # caught by Mesh itself
