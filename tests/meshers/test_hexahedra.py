@@ -10,6 +10,7 @@ from csgmesh.mesh import Mesh
 from csgmesh.meshers.hexahedra import hexahedral_mesh
 
 CUBE = cm.Box((0, 0, 0), (1, 1, 1))
+PLATE = cm.Box((0, 0, 0), (2, 2, 0.6), name="plate")
 BRACKET = (
     (cm.Box((0, 0, 0), (4, 2, 0.5), name="plate") | cm.Box((0, 0, 0), (0.5, 2, 2), name="wall"))
     - cm.Cylinder((2.5, 1, -1), (2.5, 1, 2), 0.4, name="bore")
@@ -31,6 +32,9 @@ SHARP = {
     "bore": (CUBE - cm.Cylinder((0.5, 0.5, -1), (0.5, 0.5, 2), 0.25), 0.12),
     "bite": (CUBE - cm.Ball((0, 0, 1), 0.5), 0.12),
     "bracket": (BRACKET, 0.2),
+    "boss": (PLATE | cm.Cylinder((1, 1, 0.3), (1, 1, 1.2), 0.5, name="boss"), 0.15),
+    "knob": (PLATE | cm.Ball((1, 1, 0.6), 0.5, name="knob"), 0.15),
+    "pocket": (PLATE - cm.Cylinder((1, 1, 0.3), (1, 1, 1), 0.5, name="pocket"), 0.15),
 }
 
 
@@ -74,6 +78,16 @@ def test_sharp_edges_are_kept() -> None:
     assert {
         (float(a), float(b), float(c)) for a in (0, 1) for b in (0, 1) for c in (0, 1)
     } < corners
+
+
+def test_reentrant_edges_are_kept() -> None:
+    shape, size = SHARP["boss"]
+    mesh = meshed(shape, size)
+    foot = np.intersect1d(mesh.boundary_points("boss.side"), mesh.boundary_points("plate.top"))
+    x, y, z = mesh.points[foot].T
+    assert len(foot) >= 16
+    np.testing.assert_allclose(np.hypot(x - 1, y - 1), 0.5, atol=1e-12)
+    np.testing.assert_allclose(z, 0.6, atol=1e-15)
 
 
 def test_meshes_are_the_same_every_time() -> None:

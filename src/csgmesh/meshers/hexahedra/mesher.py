@@ -17,6 +17,7 @@ from csgmesh.meshers.hexahedra.judging import lost_corners, require_likeness, re
 from csgmesh.meshers.hexahedra.labels import labelled
 from csgmesh.meshers.hexahedra.placing import Relaxation, places_of, put, spread
 from csgmesh.meshers.hexahedra.strata import JOINED, Finder, Strata
+from csgmesh.meshers.hexahedra.strips import with_strips
 from csgmesh.meshers.workspace import Progress
 
 #: What is tried, in turn: cells this much smaller than asked for, and how deep the core's cells
@@ -38,7 +39,8 @@ def hexahedral_mesh(
 
     Cells of a grid inside the domain make the core. Its planes pass through the flat faces that
     are perpendicular to an axis, so these, and the edges between them, are met as they are. Along
-    each other face a sheet of cells is put in; vertices go to the exact corners, curves and
+    each other face a sheet of cells is put in, and one along each reentrant edge of a flat face
+    perpendicular to an axis; vertices go to the exact corners, curves and
     surfaces, and those near the boundary are relaxed.
 
     Parameters
@@ -76,7 +78,9 @@ def hexahedral_mesh(
     ----------
     Sizes do not vary over the mesh. Where cells of the size asked for do not resolve the domain,
     smaller ones are tried, and ``info`` says so. A boundary that touches itself along an edge is
-    refused.
+    refused. Not resolved, at any size, are mostly edges with more than 150° inside the solid
+    between two faces of which none is flat and perpendicular to an axis, such as where two pipes
+    meet, and corners where several such edges end.
 
     Termination
     -----------
@@ -180,6 +184,7 @@ def with_sheets(blocks: Blocks, strata: Strata, ways: np.ndarray) -> Blocks:
     np.minimum.at(low, blocks.label, way)
     np.maximum.at(high, blocks.label, way)
     bent = (low < high) | (strata.face_axis < 0)
+    blocks = with_strips(blocks, strata, bent)
     for g in np.unique(group[bent]).tolist():
         blocks = with_sheet(blocks, group[blocks.label] == g)
     return blocks
