@@ -66,6 +66,15 @@ def determinant(e):
 
 
 @njit(**HELPER)
+def raised(f, power):
+    """A whole power."""
+    out = 1.0
+    for _ in range(power):
+        out *= f
+    return out
+
+
+@njit(**HELPER)
 def corner_energy(e, scale, epsilon, power):
     """Energy of a corner."""
     square = 0.0
@@ -76,8 +85,9 @@ def corner_energy(e, scale, epsilon, power):
     chi = 0.5 * (d + sqrt(epsilon * epsilon + d * d))
     if chi <= 0.0:
         return 1e300
-    f = square / (3.0 * chi ** (2.0 / 3.0)) + VOLUMES * (d * d + 1.0) / chi
-    return f**power
+    root = np.cbrt(chi)
+    f = square / (3.0 * root * root) + VOLUMES * (d * d + 1.0) / chi
+    return raised(f, power)
 
 
 @njit(**HELPER)
@@ -155,7 +165,8 @@ def add_corner(e, column, scale, epsilon, power, g, h):
     dx *= s3
     dy *= s3
     dz *= s3
-    weight = chi ** (-2.0 / 3.0) / 3.0
+    third = np.cbrt(chi)
+    weight = 1.0 / (3.0 * third * third)
     shape = square * weight
     volume = VOLUMES * (d * d + 1.0) / chi
     f = shape + volume
@@ -168,7 +179,7 @@ def add_corner(e, column, scale, epsilon, power, g, h):
     by_dd += VOLUMES * (2.0 / chi - 4.0 * d * ratio / chi)
     by_dd += volume * (2.0 * ratio * ratio - bend / chi)
     by_dd = max(by_dd, 0.0)
-    outer = power * f ** (power - 1.0)
+    outer = power * raised(f, power - 1)
     gx = weight * tx + by_d * dx
     gy = weight * ty + by_d * dy
     gz = weight * tz + by_d * dz
@@ -177,7 +188,7 @@ def add_corner(e, column, scale, epsilon, power, g, h):
     g[2] += outer * gz
     round_ = outer * weight * s2 * (2.0 if column >= 0 else 6.0)
     steep = outer * by_dd
-    twice = outer * (power - 1.0) / f
+    twice = outer * (power - 1) / f
     h[0] += round_ + steep * dx * dx + twice * gx * gx
     h[1] += steep * dx * dy + twice * gx * gy
     h[2] += steep * dx * dz + twice * gx * gz
@@ -227,7 +238,8 @@ def relax(
     """One visit of each vertex of a list from `start` on; the next one to visit.
 
     `star` holds 8 cell + corner for each vertex in turn; `frame` the normal of vertices on faces,
-    the tangent of those on curves; `scale` one over the length wanted there.
+    the tangent of those on curves; `scale` one over the length wanted there;
+    `power` is a whole number.
     """
     view = (xyz, hexes, star, star_begin, kind, frame, scale, scratch[0])
     g = scratch[1]

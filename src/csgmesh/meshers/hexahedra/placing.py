@@ -137,8 +137,8 @@ _SPREADING = 6
 #: Layers of cells behind the boundary whose vertices move.
 _LAYERS = 4
 _UNTANGLING = 60
-_ROUNDING = 12
-_SHARPENING = 10
+_ROUNDING = 8
+_SHARPENING = 8
 
 
 @dataclass
@@ -177,7 +177,7 @@ class Relaxation:
         scale = np.full(len(points), 1.0 / size)
         return cls(points, active, star, begin, vertices, scale, places, strata)
 
-    def sweep(self, epsilon: float, power: float) -> None:
+    def sweep(self, epsilon: float, power: int) -> None:
         """Visit each vertex once, then put those of the boundary back."""
         scratch = np.zeros((4, 9))
         frame = frames(self.points, self.places, self.strata)
@@ -217,9 +217,9 @@ class Relaxation:
             least = self.least()
             if least > 0.0:
                 break
-            self.sweep(np.sqrt(1e-12 + 0.04 * min(least, 0.0) ** 2), 1.0)
+            self.sweep(np.sqrt(1e-12 + 0.04 * min(least, 0.0) ** 2), 1)
         best, kept = self.worst(), self.points.copy()
-        for power, times in ((1.0, _ROUNDING), (3.0, _SHARPENING)):
+        for power, times in ((1, _ROUNDING), (3, _SHARPENING)):
             for _ in range(times):
                 self.sweep(np.sqrt(1e-12 + 0.04 * min(self.least(), 0.0) ** 2), power)
                 now = self.worst()

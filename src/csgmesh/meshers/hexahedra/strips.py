@@ -84,8 +84,9 @@ def _split(blocks: Blocks, backs: np.ndarray) -> tuple[Blocks, np.ndarray]:
     doubled = np.unique(sheet)
     copy = np.arange(len(points))
     copy[doubled] = len(points) + np.arange(len(doubled))
-    by_row = {tuple(r): k for k, r in zip(np.flatnonzero(outer).tolist(), rows[outer].tolist())}
-    found = np.array([owner[by_row[tuple(r)]] for r in np.sort(blocks.quads, axis=1).tolist()])
+    at = np.flatnonzero(outer)
+    cell = {tuple(r): k for r, k in zip(rows[at].tolist(), owner[at].tolist(), strict=True)}
+    found = np.array([cell[tuple(r)] for r in np.sort(blocks.quads, axis=1).tolist()])
     keeps = backs[found]
     strip, label = _open_sides(blocks, sheet, keeps, copy)
     quads = np.where(keeps[:, None], blocks.quads, copy[blocks.quads])
