@@ -131,22 +131,22 @@ def test_regions_from_a_domain_file(tmp_path) -> None:
 
 def test_coinciding_faces_are_divided_where_names_change() -> None:
     first = cm.Box((0, 0, 0), (2, 2, 2), name="first")
-    plc = cm.evaluate(first | cm.Cylinder((2, 2, 0), (2, 2, 2), 1, name="second"), deviation=1e-4)
+    plc = cm.evaluate(first | cm.Cylinder((2, 2, 0), (2, 2, 2), 1, name="second"), deviation=1e-3)
     names = plc.boundary_names
     area = {entry: plc.facet_areas()[plc.facet_marker == k].sum() for k, entry in enumerate(names)}
-    assert area["first.top",] == pytest.approx(4 - PI / 4, abs=2e-3)
-    assert area["first.top", "second.top"] == pytest.approx(PI / 4, abs=2e-3)
-    assert area["second.top",] == pytest.approx(3 / 4 * PI, abs=2e-3)
+    assert area["first.top",] == pytest.approx(4 - PI / 4, abs=4e-3)
+    assert area["first.top", "second.top"] == pytest.approx(PI / 4, abs=4e-3)
+    assert area["second.top",] == pytest.approx(3 / 4 * PI, abs=8e-3)
 
 
 def test_one_cylinder_on_another_is_one_surface_with_three_stretches() -> None:
     lower = cm.Cylinder((0, 0, 0), (0, 0, 2), 1, name="lower")
-    plc = cm.evaluate(lower | cm.Cylinder((0, 0, 4), (0, 0, 1), 1, name="upper"), deviation=1e-4)
+    plc = cm.evaluate(lower | cm.Cylinder((0, 0, 4), (0, 0, 1), 1, name="upper"), deviation=1e-3)
     side = [m for m, entry in enumerate(plc.boundary_names) if entry[0].endswith("side")]
     area = {plc.boundary_names[m]: plc.facet_areas()[plc.facet_marker == m].sum() for m in side}
     assert area == {
-        ("lower.side",): pytest.approx(2 * PI, abs=2e-3),
-        ("lower.side", "upper.side"): pytest.approx(2 * PI, abs=2e-3),
-        ("upper.side",): pytest.approx(4 * PI, abs=4e-3),
+        ("lower.side",): pytest.approx(2 * PI, abs=1e-2),
+        ("lower.side", "upper.side"): pytest.approx(2 * PI, abs=1e-2),
+        ("upper.side",): pytest.approx(4 * PI, abs=2e-2),
     }
     assert len(np.unique(plc.facet_surface[np.isin(plc.facet_marker, side)])) == 1

@@ -14,11 +14,16 @@ import numpy as np
 
 from csgmesh.boundary.facets import Facets
 from csgmesh.boundary.touching import Sheets
+from csgmesh.csg.primitives.half_space import HalfSpace
 from csgmesh.csg.program import Code, Leaf
 from csgmesh.errors import EvaluationError, UnboundedDomainError
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
+
+#: How far from the centre of local coordinates a bounded domain may reach, less than half-spaces'
+#: boxes do in any direction.
+_FAR = 1.25
 
 #: A solid, and whether its complement is meant.
 _Operand = tuple["Manifold", bool]
@@ -33,7 +38,9 @@ def regions_of(codes: Sequence[Code], bodies: Sequence[Facets], leaves: Sequence
     bodies : sequence of Facets
         Of all leaves, in local coordinates.
     leaves : sequence of Leaf
-        For messages.
+
+    Surfaces of the result have numbers as in all `bodies` together, and the next one where a domain
+    reaches to infinity.
 
     Raises
     ------
@@ -43,10 +50,13 @@ def regions_of(codes: Sequence[Code], bodies: Sequence[Facets], leaves: Sequence
         If a leaf's facets do not close.
     """
     first_id, solids = _solids(bodies, leaves)
+    reach = any(isinstance(leaf.primitive, HalfSpace) for leaf in leaves) and _everywhere(
+        first_id + sum(len(body.surfaces) for body in bodies)
+    )
     later: list[Manifold] = []
     found = []
     for code in reversed(codes):
-        whole = _combined(code, solids)
+        whole = _combined(code, solids, reach or None)
         found.append(_less(whole, later))
         later.append(whole)
     parts = [_arrays(solid, first_id) for solid in reversed(found)]
@@ -65,7 +75,7 @@ def _solids(bodies: Sequence[Facets], leaves: Sequence[Leaf]) -> tuple[int, list
     from manifold3d import Error, Manifold, Mesh64
 
     counts = [len(body.surfaces) for body in bodies]
-    first_id = start = Manifold.reserve_ids(sum(counts))
+    first_id = start = Manifold.reserve_ids(sum(counts) + 1)
     solids = []
     for body, leaf, count in zip(bodies, leaves, counts, strict=True):
         order = np.argsort(body.surface, kind="stable")
@@ -91,8 +101,26 @@ def _less(solid: Manifold, later: Sequence[Manifold]) -> Manifold:
     return Manifold.batch_boolean([solid, *later], OpType.Subtract) if later else solid
 
 
-def _combined(code: Code, solids: Sequence[Manifold]) -> Manifold:
-    """Fold a region's postfix code; a complement is a solid and a flag."""
+def _everywhere(number: int) -> Manifold:
+    """A box around all that half-spaces may bound, whose sides are one original."""
+    from manifold3d import Manifold, Mesh64
+
+    mesh = Manifold.cube((2.0 * _FAR,) * 3, center=True).to_mesh64()
+    return Manifold(
+        Mesh64(
+            np.array(mesh.vert_properties)[:, :3],
+            np.array(mesh.tri_verts),
+            run_index=np.array([0, 3 * len(mesh.tri_verts)], np.uint64),
+            run_original_id=np.array([number], np.uint32),
+        )
+    )
+
+
+def _combined(code: Code, solids: Sequence[Manifold], reach: Manifold | None) -> Manifold:
+    """Fold a region's postfix code; a complement is a solid and a flag.
+
+    What half-spaces leave over is bounded if it does not touch the sides of `reach`.
+    """
     stack: list[_Operand] = []
     for word, count in code:
         if word == "leaf":
@@ -111,6 +139,8 @@ def _combined(code: Code, solids: Sequence[Manifold]) -> Manifold:
         else:
             stack.append(reduce(_exclusive, operands))
     ((solid, negated),) = stack
+    if negated and reach is not None:
+        return reach - solid
     if negated:
         raise UnboundedDomainError(
             "the domain reaches to infinity: it is the complement of a bounded solid"

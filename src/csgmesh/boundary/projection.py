@@ -7,11 +7,12 @@ import numpy as np
 from csgmesh.domain.curves import ARC, LINE, Curves
 from csgmesh.domain.surfaces import PLANE, REVOLVED, Surfaces
 
-_STEPS = 12
+#: Steps double the digits, but halve the distance only where surfaces touch.
+_STEPS = 40
 
 #: Directions count as independent if the least singular value of the normals exceeds this share of
 #: the largest: below it surfaces touch, and where they do is ill-defined along the touching.
-_INDEPENDENT = 1e-4
+_INDEPENDENT = 1e-6
 
 #: How far a vertex may pass the end of a surface, as a share of the profile's length.
 _BEYOND = 0.25
@@ -48,6 +49,11 @@ def project_vertices(
             gap = ((foot - flat).reshape(-1, k, 3) * normal).sum(axis=2)
             inverse = np.linalg.pinv(normal, rcond=_INDEPENDENT)
             move = np.einsum("vij,vj->vi", inverse, gap)
+            # Where surfaces touch, a gap g closes over a way of the order of its root; whoever goes
+            # further follows rounding.
+            way = np.sqrt((move**2).sum(axis=1))
+            most = 2.0 * np.sqrt(np.abs(gap).max(axis=1))
+            move *= (most / np.maximum(np.maximum(way, most), 1e-300))[:, None]
             out[at] = place + move
             going = np.abs(move).max(axis=1) > 4.0 * np.finfo(float).eps
             if not going.any():

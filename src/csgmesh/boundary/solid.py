@@ -127,7 +127,7 @@ def _markers(
 
 
 def _refuse_unbounded(sheets: Sheets, stock: _Stock, frame: Frame) -> None:
-    nameless = np.array([not parts for parts in stock.parts])
+    nameless = np.array([*(not parts for parts in stock.parts), True])
     far = np.flatnonzero(nameless[sheets.surface])
     if len(far):
         middle = sheets.points[sheets.triangles[far[0]]].mean(axis=0)

@@ -70,26 +70,45 @@ def settle(sheets: Sheets, snap: float) -> Sheets:
         If it does not come to an end; with the place.
     """
     _merge_points(sheets, snap)
-    active = np.ones(len(sheets.triangles), bool)
+    active, suspect = np.ones((2, len(sheets.triangles)), bool)
+    is_whole = True
     for _ in range(_ROUNDS):
         facet = np.flatnonzero(active)
         pairs = _near(sheets, facet, snap)
-        events, active = _touched(sheets, facet, pairs, snap)
-        if not events:
+        events, involved = _touched(sheets, facet, pairs, snap)
+        suspect = involved if is_whole else suspect | involved
+        if not events and is_whole:
             _overlay(sheets, facet, pairs, snap)
             return sheets
-        vertex, merged = _with_new_points(sheets, events, active, snap)
+        is_whole = not events
+        if not events:
+            active = suspect
+            continue
+        vertex, merged = _with_new_points(sheets, events, involved, snap)
         triangles, parent = halved(
             sheets.points, sheets.triangles, events.edge, vertex, events.facet, events.inner
         )
+        active, suspect = _changed(len(sheets.triangles), facet[pairs], parent, involved, suspect)
         sheets.triangles = merged[triangles] if merged is not None else triangles
         sheets.surface, sheets.layer = sheets.surface[parent], sheets.layer[parent]
-        active = active[parent]
         real = (sheets.triangles != np.roll(sheets.triangles, 1, axis=1)).all(axis=1)
         _keep(sheets, real)
-        active = active[real]
+        active, suspect = active[real], suspect[real]
     x, y, z = sheets.points[vertex[0]] if len(vertex) else sheets.points[events.inner[0]]
     raise EvaluationError(f"pieces of the boundary touch without end near ({x}, {y}, {z})")
+
+
+def _changed(
+    n: int, pairs: np.ndarray, parent: np.ndarray, involved: np.ndarray, suspect: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Which new facets to look at next, and which again at the end.
+
+    Where neither facet of a pair was split, they meet as they did before.
+    """
+    split = np.bincount(parent, minlength=n) > 1
+    active = split & involved
+    active[pairs[split[pairs].any(axis=1)].ravel()] = True
+    return active[parent], suspect[parent]
 
 
 def _overlay(sheets: Sheets, facet: np.ndarray, pairs: np.ndarray, snap: float) -> None:
@@ -170,9 +189,7 @@ def _touched(
     edge, share, on, inside = _points_on(points, triangles, at, vertex, snap)
     caps = _caps(points, triangles, n, snap)
     involved[facet[caps[3]]] = True
-    one, two, share_one, share_two, places = _crossings(
-        points, triangles, pairs, _sheet(sheets)[facet], snap
-    )
+    one, two, share_one, share_two, places = _crossings(sheets, triangles, pairs, snap)
     new = n + np.arange(len(places))
     edges = np.concatenate([edge, caps[0], one, two])
     shares = np.concatenate([share, caps[1], share_one, share_two])
@@ -302,10 +319,10 @@ def _diagonals(
 
 
 def _crossings(
-    points: np.ndarray, triangles: np.ndarray, pairs: np.ndarray, sheet: np.ndarray, snap: float
+    sheets: Sheets, triangles: np.ndarray, pairs: np.ndarray, snap: float
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """Pairs of edges, no diagonals, that cross: both edges, where along each, and the place."""
-    n = len(points)
+    points, n = sheets.points, len(sheets.points)
     met, number = np.unique(pairs, return_inverse=True)
     pairs, tail = number.reshape(-1, 2), triangles[met]
     head = np.roll(tail, -1, axis=1)
@@ -341,7 +358,7 @@ def _crossings(
                 gap = points[x[:, end]] - points[y[:, other]]
                 clear &= (gap * gap).sum(axis=1) > snap * snap
     found = np.unique(names[np.append(one[clear], two[clear])])
-    diagonal = _diagonals(points, triangles, sheet, found, snap)
+    diagonal = _diagonals(points, sheets.triangles, _sheet(sheets), found, snap)
     clear &= ~np.isin(names[one], diagonal) & ~np.isin(names[two], diagonal)
     one, two, a, b, s, t = one[clear], two[clear], a[clear], b[clear], s[clear], t[clear]
     place = 0.5 * (
