@@ -112,3 +112,16 @@ def test_what_cannot_be_is_refused():
         surface_mesh(plc, even(-1.0))
     with pytest.raises(BudgetError, match="max_points = 100"):
         surface_mesh(plc, even(0.05), max_points=100)
+
+
+def test_a_union_of_many_balls_and_boxes_stays_closed():
+    rng = np.random.default_rng(0)
+    parts = []
+    for k in range(30):
+        c, d = rng.uniform(0, 3, 3), rng.uniform(0.3, 0.9, 3)
+        parts.append(cm.Ball(c, d[0]) if k % 2 else cm.Box(c - d / 2, c + d / 2))
+    plc = cm.evaluate(cm.union(parts))
+    mesh = surface_mesh(plc, even(0.15))
+    assert_sound(mesh)
+    assert volume(mesh) == pytest.approx(plc.volumes()[0], rel=0.02)
+    assert (angles(mesh.points, mesh.triangles) < 25.0).mean() < 0.005

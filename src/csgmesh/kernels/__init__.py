@@ -80,6 +80,8 @@ _HOME = {
     "insert_samples": "surface.coarsening",
     "take_vertices": "surface.coarsening",
     "refine_surface": "surface.refining",
+    "divide_edges": "surface.refining",
+    "surface_feet": "surface.normals",
     "smooth_surface": "surface.smoothing",
     "split_leaves": "tree.leaves",
     "mark_unbalanced": "tree.leaves",

@@ -34,6 +34,7 @@ from .topology import (
     QUEUED,
     SEGMENTS,
     TRIANGLES,
+    after,
     distance,
     put_back,
 )
@@ -47,7 +48,7 @@ OFF_CENTRE = 0.475
 #: Half a segment must be as long as this share of the edge for whose sake it is halved.
 HALF = 0.7
 #: No half is shorter than this share of the wanted length.
-LEAST = 0.02
+LEAST = 2e-4
 #: Segments that meet below 60 degrees excuse the triangles across: cosine.
 SHARP = 0.5
 #: Room that one step may need: triangles, and vertices or segments.
@@ -207,3 +208,32 @@ def refine_surface(arrays, share, off, limit):
             return DONE
         if view.origin[4 * t + FACE] >= 0 and treat(view, t, share, off, force):
             enqueue(view, t)
+
+
+@njit(**ENTRY)
+def divide_edges(arrays, halves, is_segment):
+    """Put a vertex on the middle of each edge, by a half-edge, or of each segment, by its number.
+
+    The number of vertices.
+    """
+    view = view_of(arrays)
+    p = view.xyz
+    done = 0
+    for k in range(halves.shape[0]):
+        h = halves[k]
+        if is_segment[k]:
+            done += halve(view, h) == INSERTED
+            continue
+        a = 3 * view.origin[h]
+        b = 3 * view.origin[after(h)]
+        face = view.origin[h | 3]
+        x, y, z = put_back(
+            view,
+            2,
+            face,
+            0.5 * (p[a] + p[b]),
+            0.5 * (p[a + 1] + p[b + 1]),
+            0.5 * (p[a + 2] + p[b + 2]),
+        )
+        done += put_into(view, h, 0.0, x, y, z) == INSERTED
+    return done

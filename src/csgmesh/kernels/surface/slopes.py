@@ -8,11 +8,14 @@ from numba import njit
 
 from ..pointers import HELPER
 from .exact import on_surface
+from .topology import distance
 
-#: Largest sine between an edge and its surface: a sixth of a turn from end to end.
+#: Largest sine between an edge and its surface: a sixth of a turn from end to end. It holds for
+#: edges up to so many times as long as wanted.
 STEEP = 0.5
-#: Edges of the wanted length, and half as long again, are allowed, and all below a twentieth.
-#: A vertex's bound by curvature is 0.8 radii, and an edge of length l rises by l / 2 radii.
+SHORT = 1.5
+#: Longer ones rise no more than those of the wanted length, and half as long again, or than this:
+#: a vertex's bound by curvature is 0.8 radii, and an edge of length l rises by l / 2 radii.
 SHARE = 0.6
 GENTLE = 0.05
 #: So far from the ends, as the apex of a cone has no normal.
@@ -42,5 +45,7 @@ def steepest(view, a, b):
 
     Across a tube that has vertices at its ends only, long edges would else cut through.
     """
+    if 2.0 * distance(view, a, b) <= SHORT * (view.size[a] + view.size[b]):
+        return STEEP
     share = (view.size[a] + view.size[b]) / (view.cap[a] + view.cap[b])
     return min(max(SHARE * share, GENTLE), STEEP)

@@ -6,6 +6,7 @@ import numpy as np
 
 from csgmesh.domain.plc import Plc
 from csgmesh.meshers.surface.complexes import FeatureComplex
+from csgmesh.meshers.surface.workpiece import feet_and_normals
 
 #: Edges shorter than this share of the diagonal say nothing of curvature.
 _SHORT = 1e-7
@@ -23,8 +24,7 @@ def curvatures(plc: Plc, parts: FeatureComplex) -> np.ndarray:
         # Beside the point itself, towards the facet's middle: apexes have no normal.
         middle = plc.points[corners].mean(axis=1)
         beside = 0.98 * plc.points[flat] + 0.02 * np.repeat(middle, 3, axis=0)
-        beside = plc.surfaces.project(on, beside)
-        normals = plc.surfaces.normals(on, beside).reshape(-1, 3, 3)
+        normals = feet_and_normals(plc.surfaces, on, beside)[1].reshape(-1, 3, 3)
         for i, j in ((0, 1), (1, 2), (2, 0)):
             a, b = corners[:, i], corners[:, j]
             length = np.sqrt(((plc.points[a] - plc.points[b]) ** 2).sum(axis=1))

@@ -85,6 +85,11 @@ def surface_mesh(
     run.coarsen()
     run.refine()
     run.smooth()
+    if run.has_unwanted():
+        run.coarsen()
+        run.refine()
+        run.smooth()
+    run.divide_repeated()
     return run.result()
 
 
@@ -208,6 +213,24 @@ class _Run:
             for start, stop in _slices(work.n_points):
                 kernels.smooth_surface(work.arrays, start, stop)
             self._flip(False)
+
+    def has_unwanted(self) -> bool:
+        """Whether vertices of curves are left that could not be taken away before."""
+        a, n = self.work.a, self.work.n_points
+        return bool(((a["dim"][:n] == 1) & (a["keep"][:n] == 0)).any())
+
+    def divide_repeated(self) -> None:
+        """Divide all but one of the edges with the same two ends, which thin faces have."""
+        work = self.work
+        for _ in range(_ROUNDS):
+            number, is_segment = work.repeated()
+            if not len(number):
+                return
+            n = len(number)
+            work.reserve(n + 2, 64 * (n + 2), n + 2)
+            known = work.n_points
+            kernels.divide_edges(work.arrays, number, is_segment)
+            self._ask_sizes(known)
 
     def result(self) -> SurfaceMesh:
         """The mesh, without gaps in its numbers."""

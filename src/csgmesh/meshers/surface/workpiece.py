@@ -17,6 +17,8 @@ _WIDTH, _INVERSE, _OFFSET, _PROFILE, _INTERVAL, _CODES = 32, 9, 18, 21, 29, 4
 _POINTS, _TRIANGLES, _SEGMENTS, _HEAD, _QUEUED, _LATER_HEAD, _LATER, _MASK = range(8)
 #: Triangles that one step may need.
 _ROOM = 512
+#: Points that one call of a kernel treats: less than 0.2 s.
+_SLICE = 50_000
 
 
 class Workpiece:
@@ -118,6 +120,32 @@ class Workpiece:
         a["queue"][at] = new
         count[_QUEUED] += len(new)
 
+    def repeated(self) -> tuple[np.ndarray, np.ndarray]:
+        """Half-edges of edges, and segments, that have the same two ends as others.
+
+        One of several segments is left out. The segments' numbers come last; also which of the
+        two each number is.
+        """
+        twin = self.a["twin"].reshape(-1, 4)
+        living = self.living()
+        row, k = np.nonzero(twin[living, :3] > 4 * living[:, None] + np.arange(3))
+        half = 4 * living[row] + k
+        seg = self.a["seg"][: 4 * self.n_segments].reshape(-1, 4)
+        there = np.flatnonzero(seg[:, 0] >= 0)
+        origin = self.a["origin"]
+        following = 4 * (half // 4) + (half % 4 + 1) % 3
+        ends = np.concatenate(
+            [seg[there, :2], np.column_stack([origin[half], origin[following]])]
+        ).astype(np.int64)
+        key = ends.min(axis=1) * self.n_points + ends.max(axis=1)
+        order = np.argsort(key, kind="stable")
+        same = key[order[1:]] == key[order[:-1]]
+        first, again = order[:-1][same], order[1:][same]
+        again = np.unique(np.concatenate([first[first >= len(there)], again]))[::-1]
+        is_segment = again < len(there)
+        number = np.where(is_segment, there[again * is_segment], half[again - len(there)])
+        return number, is_segment
+
     def living(self) -> np.ndarray:
         """Numbers of the triangles that are there."""
         face = self.a["origin"][3 : 4 * self.n_triangles : 4]
@@ -148,10 +176,24 @@ def surface_table(surfaces: Surfaces) -> tuple[np.ndarray, np.ndarray]:
     return number.reshape(-1), code.reshape(-1)
 
 
+def feet_and_normals(
+    surfaces: Surfaces, which: np.ndarray, points: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Feet of points (k, 3) on surfaces `which` (k,) and the outward normals there."""
+    number, code = surface_table(surfaces)
+    feet, normals = np.empty((len(points), 3)), np.empty((len(points), 3))
+    which = np.ascontiguousarray(which, dtype=np.int64)
+    points = np.ascontiguousarray(points, dtype=np.float64)
+    for start in range(0, len(points), _SLICE):
+        stop = min(start + _SLICE, len(points))
+        kernels.surface_feet(code, number, which, points, feet, normals, start, stop)
+    return feet, normals
+
+
 def _signs(plc: Plc, parts: FeatureComplex) -> np.ndarray:
     """1 for faces that look to where their surface's normal points, -1 for others."""
     a, b, c = (plc.points[plc.facets[:, k]] for k in range(3))
-    normals = plc.surfaces.normals(plc.facet_surface, (a + b + c) / 3.0)
+    _, normals = feet_and_normals(plc.surfaces, plc.facet_surface, (a + b + c) / 3.0)
     along = (np.cross(b - a, c - a) * normals).sum(axis=1)
     return np.where(np.bincount(parts.face, weights=along) < 0.0, -1, 1)
 
