@@ -157,6 +157,36 @@ def test_rounding_leaves_no_flat_tetrahedra_on_flat_faces() -> None:
     assert (np.einsum("ij,ij->i", np.cross(b - a, c - a), d - a) > 1e-7).all()
 
 
+def test_what_no_flips_recover_is_told_with_its_place() -> None:
+    # A twisted prism (Schoenhardt 1928): no tetrahedra fill it without a point inside.
+    turn = np.radians([0, 120, 240])
+    low = np.column_stack([np.cos(turn), np.sin(turn), np.zeros(3)])
+    high = np.column_stack([np.cos(turn - 0.5), np.sin(turn - 0.5), np.ones(3)])
+    sides = [[k, (k + 1) % 3, 3 + k] for k in range(3)]
+    sides += [[(k + 1) % 3, 3 + (k + 1) % 3, 3 + k] for k in range(3)]
+    triangles = np.array([[0, 2, 1], [3, 4, 5], *sides])
+    edges = np.unique(np.sort(triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1), axis=0)
+    surface = replace(
+        surface_of(cm.evaluate(CUBE)),
+        points=np.vstack([low, high]),
+        triangles=triangles,
+        face=np.arange(8),
+        face_region=np.tile([0, -1], (8, 1)),
+        segments=edges,
+    )
+    cells = tetrahedralize(surface, NONE)
+    assert len(cells.missing)
+    assert not len(cells.tets)
+    assert cells.places == pytest.approx(surface.points[triangles[cells.missing]].mean(axis=1))
+
+
+def test_a_surface_with_a_hole_is_an_error_with_its_place() -> None:
+    surface = surface_of(cm.evaluate(CUBE))
+    open_ = replace(surface, triangles=surface.triangles[1:], face=surface.face[1:])
+    with pytest.raises(cm.MeshingError, match=r"does not part its regions near \("):
+        tetrahedralize(open_, NONE)
+
+
 def test_equal_points_are_an_error_with_their_place() -> None:
     surface = surface_of(cm.evaluate(CUBE))
     with pytest.raises(cm.MeshingError, match=r"points 8 and 9 are both \(0.5, 0.25, 0.5\)"):
