@@ -56,7 +56,7 @@ def improve_tetrahedra(
     points : (n, 3) float64
         Those of `surface` first.
     tets : (m, 4) int64
-        Positively oriented; not much is lost where some have no volume.
+        Positively oriented. Some may have no volume; these are treated first.
     region : (m,) int64
         Region of each tetrahedron.
     triangles : (k, 3) int64
@@ -118,9 +118,8 @@ def improve_tetrahedra(
 
     >>> import csgmesh as cm
     >>> plc = cm.evaluate(cm.Box((0, 0, 0), (1, 1, 1)))
-    >>> numbers, none = np.arange(6), np.zeros(0, np.int64)
     >>> surface = SurfaceMesh(
-    ...     plc.points, plc.facets, plc.facet_surface, numbers, plc.facet_marker[::2],
+    ...     plc.points, plc.facets, plc.facet_surface, np.arange(6), plc.facet_marker[::2],
     ...     plc.facet_region[::2], plc.feature_edges(), np.arange(12), np.zeros((12, 2), int),
     ...     np.zeros(8, np.int8), np.arange(8), plc)
     >>> points = np.vstack([plc.points, [0.5, 0.5, 0.05]])
