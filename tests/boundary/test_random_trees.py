@@ -65,7 +65,7 @@ def examine(seed: int) -> None:
     middle = plc.points[plc.facets].mean(axis=1)
     corner = plc.points[plc.facets]
     normal = np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0])
-    normal /= np.sqrt((normal**2).sum(axis=1))[:, None]
+    normal /= np.maximum(np.sqrt((normal**2).sum(axis=1)), 1e-300)[:, None]
     reach = 2 * plc.deviation + 1e-9
     fair = plc.facet_areas() > 1e-6
     for leaf in plc.oracle.leaves:
