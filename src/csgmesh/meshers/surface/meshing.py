@@ -87,8 +87,11 @@ def surface_mesh(
     run.smooth()
     if run.has_unwanted():
         run.coarsen()
-        run.refine()
-        run.smooth()
+    # Smoothed stars leave room where there was none.
+    before = run.work.n_points
+    run.refine()
+    if run.work.n_points > before:
+        run.smooth(1)
     run.divide_repeated()
     return run.result()
 
@@ -206,10 +209,10 @@ class _Run:
             work.enqueue(living[around[work.corners(living)].any(axis=1)])
         return n
 
-    def smooth(self) -> None:
+    def smooth(self, times: int = _SMOOTHINGS) -> None:
         """Smooth and flip in turn."""
         work = self.work
-        for _ in range(_SMOOTHINGS):
+        for _ in range(times):
             for start, stop in _slices(work.n_points):
                 kernels.smooth_surface(work.arrays, start, stop)
             self._flip(False)
