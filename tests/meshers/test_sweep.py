@@ -160,3 +160,48 @@ def test_from_a_domain_file(tmp_path) -> None:
     mesh = cm.load(file).generate()
     assert mesh.info["layers"] == 2
     assert set(mesh.cells) == {"wedge"}
+
+
+WASHER_FILE = """csgmesh: 1
+domain: {extrude: {shape: {disk: {center: [0, 0], radius: 1}}, height: 0.5}}
+mesh:
+  sweep:
+    mesher:
+      MESHER
+    layers: 2
+  size: 0.3
+"""
+
+
+def test_a_nested_mesher_from_a_domain_file(tmp_path) -> None:
+    file = tmp_path / "washer.yaml"
+    file.write_text(WASHER_FILE.replace("MESHER", "quad_pairing: {}"))
+    mesh = cm.load(file).generate()
+    assert set(mesh.cells) == {"hexahedron"}
+    assert mesh.info["profile"] == "QuadPairing"
+
+
+@pytest.mark.parametrize(
+    ("mesher", "message"),
+    [
+        ("quad_pairing: {pairs: 3}", r"washer.yaml:6:22: .*pairs"),
+        ("sweep: {}", r"washer.yaml:6:7: mesher must be a mesher of the plane"),
+        ("delaunay_refinement: {min_angle: 90}", r"washer.yaml:6:\d+: .*min_angle"),
+        ("quad_paring: {}", r"washer.yaml:6:7: .*quad_paring"),
+    ],
+)
+def test_a_nested_mesher_is_refused_with_its_line(tmp_path, mesher: str, message: str) -> None:
+    file = tmp_path / "washer.yaml"
+    file.write_text(WASHER_FILE.replace("MESHER", mesher))
+    with pytest.raises(cm.DomainFileError, match=message):
+        cm.load(file)
+
+
+def test_the_schema_knows_nested_meshers() -> None:
+    from csgmesh.domainfile import json_schema
+
+    parts = json_schema()["$defs"]
+    sweep = parts["SweepArguments"]["anyOf"][0]["properties"]
+    region = parts["PerRegionArguments"]["anyOf"][0]["properties"]
+    for field in (sweep["mesher"], region["default"]):
+        assert field["$ref"].endswith("/MesherChoice")

@@ -112,14 +112,18 @@ def arguments_of(
     return model
 
 
-#: A mapping of names to meshers; what a mesher is, the schema says when it knows all of them.
-NAMED_MESHERS: Any = dict.__class_getitem__((str, ForwardRef("MesherChoice")))
+#: A mesher inside another, and a mapping of names to meshers; what a mesher is, the schema says
+#: when it knows all of them.
+ONE_MESHER: Any = ForwardRef("MesherChoice")
+NAMED_MESHERS: Any = dict.__class_getitem__((str, ONE_MESHER))
 
 
 def _nested(annotation: str) -> Any:
-    """The field for a mapping of names to `Layers` or to meshers; None for other annotations."""
+    """The field for a mesher, a mapping of names to `Layers` or to meshers; None for others."""
     if annotation == "Mapping[str, Layers]":
         return dict[str, layers_arguments()]  # type: ignore[misc]
+    if annotation.removesuffix(" | None") == "Mesher":
+        return ONE_MESHER
     return NAMED_MESHERS if annotation == "Mapping[str, Mesher]" else None
 
 

@@ -14,6 +14,7 @@ from csgmesh.domain.sweep import SweptDomain
 from csgmesh.errors import InputError, MeshingError
 from csgmesh.mesh import Mesh
 from csgmesh.meshers.delaunay_refinement import DelaunayRefinement
+from csgmesh.meshers.per_region.mesher import Mesher
 from csgmesh.meshers.swept_cells import swept_cells, swept_facets
 from csgmesh.meshers.workspace import Progress
 
@@ -75,13 +76,17 @@ class Sweep:
     ('extrude.start', 'extrude.end', 'extrude.side.disk', 'extrude.side.disk.2')
     """
 
-    mesher: Any = None
+    mesher: Mesher | None = None
     layers: int | None = None
 
     dim = 3
 
     def __post_init__(self) -> None:
-        if self.mesher is not None and not callable(getattr(self.mesher, "generate", None)):
+        if self.mesher is not None and (
+            not callable(getattr(self.mesher, "generate", None))
+            or isinstance(self.mesher, type)
+            or getattr(self.mesher, "dim", 2) != 2
+        ):
             raise InputError(
                 f"mesher must be a mesher of the plane, such as DelaunayRefinement(); "
                 f"got {self.mesher!r}"
