@@ -39,7 +39,7 @@ def generate(
     shape : Shape, Regions, Embed, Periodic or Pslg
         What to mesh.
     mesher : object with ``generate``, optional
-        How: `DelaunayRefinement` unless given.
+        How: `DelaunayRefinement` in the plane, `Octree` in space unless given.
     size : float, mapping, callable or SizeField, optional
         Wanted edge length in coordinate units: a number; a mapping of names of boundaries or
         regions to numbers with ``"default"``, where a name that a region and a boundary share means
@@ -72,7 +72,7 @@ def generate(
     >>> mesh.names
     ('box.left', 'box.right', 'box.bottom', 'box.top', 'disk')
     """
-    mesher = default_mesher(mesher)
+    chosen = None if mesher is None else default_mesher(mesher)
     if progress is not None and not callable(progress):
         raise InputError(
             f"progress must be callable as progress(stage, done, total); got {progress!r}"
@@ -82,6 +82,7 @@ def generate(
     domain = evaluate(shape, deviation=deviation, snap=snap)
     if progress is not None:
         progress("evaluate", 1, 1)
+    mesher = chosen or default_mesher(None, domain.dim)
     _refuse_other_dimension(mesher, domain.dim)
     mesh = mesher.generate(domain, size, progress)
     if domain.dim == 2 and domain.periodic and not mesh.periodic:
@@ -95,14 +96,15 @@ def generate(
 def _refuse_other_dimension(mesher: Mesher, dim: int) -> None:
     if getattr(mesher, "dim", 2) != dim:
         places = {2: "the plane", 3: "space"}
+        others = "; Octree meshes any solid, Sweep extrusions and revolutions"
         raise InputError(
             f"{type(mesher).__name__} meshes domains in {places[5 - dim]}; this one lies in "
-            f"{places[dim]}" + ("; Sweep meshes extrusions and revolutions" if dim == 3 else "")
+            f"{places[dim]}" + (others if dim == 3 else "")
         )
 
 
-def default_mesher(mesher: Any) -> Mesher:
-    """The mesher given, or `DelaunayRefinement` for None.
+def default_mesher(mesher: Any, dim: int = 2) -> Mesher:
+    """The mesher given, or for None `DelaunayRefinement` in the plane and `Octree` in space.
 
     Raises
     ------
@@ -110,9 +112,9 @@ def default_mesher(mesher: Any) -> Mesher:
         If it is not an object that can generate.
     """
     if mesher is None:
-        from csgmesh.meshers import DelaunayRefinement
+        from csgmesh.meshers import DelaunayRefinement, Octree
 
-        return DelaunayRefinement()
+        return DelaunayRefinement() if dim == 2 else Octree()
     if isinstance(mesher, type) or not callable(getattr(mesher, "generate", None)):
         raise InputError(
             f"mesher must be an object such as DelaunayRefinement(min_angle=30), got {mesher!r}"

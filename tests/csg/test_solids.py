@@ -193,7 +193,10 @@ REFUSED = [
     (lambda: cm.Box((0, 0, 0), (1, 1, 0)), "lo must be below hi"),
     (lambda: cm.HalfSpace((0, 0, 0), (0, 0)), "normal must have 3 coordinates"),
     (lambda: cm.Ball((0, 0, 0), 1) | cm.Disk((0, 0), 1), "same dimension"),
-    (lambda: cm.generate(cm.Ball((0, 0, 0), 1)), "Sweep meshes extrusions and revolutions"),
+    (
+        lambda: cm.generate(cm.Ball((0, 0, 0), 1), cm.Quadtree()),
+        "Octree meshes any solid, Sweep extrusions and revolutions",
+    ),
 ]
 
 

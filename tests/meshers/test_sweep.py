@@ -133,7 +133,7 @@ REFUSED = [
     (
         lambda: cm.generate(WASHER, cm.DelaunayRefinement()),
         cm.InputError,
-        "Sweep meshes extrusions",
+        "Sweep extrusions",
     ),
     (lambda: cm.generate(WASHER, cm.Sweep(), size=0), cm.SizeError, "positive"),
     (

@@ -169,13 +169,13 @@ class DomainFile:
 
     def _bounded_mesher(self) -> Any:
         """The mesher with a budget of points that keeps the cells within their limit."""
-        mesher = self.mesher
+        mesher, is_solid = self.mesher, getattr(self.shape, "dim", 2) == 3
         if mesher is None:
-            mesher = mesher_classes()["delaunay_refinement"]()
+            mesher = mesher_classes()["octree" if is_solid else "delaunay_refinement"]()
         if "max_points" not in {option.name for option in fields(mesher)}:
             return mesher
-        # A triangulation has at most two triangles a point.
-        most = max(3, self.limits.cells // 2)
+        # A triangulation has at most two triangles a point; of tetrahedra there are five to six.
+        most = max(4, self.limits.cells // (5 if is_solid else 2))
         return replace(mesher, max_points=min(mesher.max_points, most))
 
     def _placed(self, error: InputError) -> DomainFileError:

@@ -3,6 +3,7 @@
 from csgmesh.meshers.constrained_delaunay import ConstrainedDelaunay
 from csgmesh.meshers.delaunay_refinement import DelaunayRefinement
 from csgmesh.meshers.layers import Layers
+from csgmesh.meshers.octree.mesher import Octree
 from csgmesh.meshers.per_region import PerRegion
 from csgmesh.meshers.quad_pairing import QuadPairing
 from csgmesh.meshers.quadtree import Quadtree
@@ -14,6 +15,7 @@ __all__ = [
     "ConstrainedDelaunay",
     "DelaunayRefinement",
     "Layers",
+    "Octree",
     "PerRegion",
     "QuadPairing",
     "Quadtree",

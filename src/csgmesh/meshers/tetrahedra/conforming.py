@@ -120,7 +120,7 @@ class _Filling:
     def _inside(self, triangles: np.ndarray, found: np.ndarray) -> Tetrahedra:
         """Tetrahedra of all regions."""
         net, kept, surface = self.net, self.kept, self.surface
-        label, status = net.flood(triangles, found, surface.region, self.stops)
+        label, status = self._flooded(triangles, found)
         rows, is_cell = net.cells()
         if status != -1:
             if status >= 0:
@@ -140,6 +140,31 @@ class _Filling:
         region[: len(keep)] = label[keep]
         region[len(keep) :] = kept.regions(outside)
         return Tetrahedra(self.points, tets, region, triangles, surface.face)
+
+    def _flooded(self, triangles: np.ndarray, found: np.ndarray) -> tuple[np.ndarray, int]:
+        """Region of each tetrahedron found, -2 where none leads, and what the kernel says.
+
+        No triangle of the surface leads into pockets among kept tetrahedra: what lies around them
+        does, once that is known from elsewhere.
+        """
+        net, kept, stops = self.net, self.kept, self.stops
+        sides = self.surface.region
+        label, status = net.flood(triangles, found, sides, stops)
+        while status == -1 and len(stops):
+            beyond = label[net.across(self.walls, stops) >> 2].astype(np.int64)
+            if (beyond >= 0).all():
+                break
+            part = kept.parts()[kept.walls[:, 0]]
+            around = np.full(len(kept.is_inserted), -1)
+            around[part[beyond >= 0]] = beyond[beyond >= 0]
+            known = (beyond < -1) & (around[part] >= 0)
+            if not known.any():
+                break
+            triangles = np.vstack([triangles, self.walls[known]])
+            here = np.stack([np.full(int(known.sum()), -1), around[part[known]]], axis=1)
+            sides, found = np.vstack([sides, here]), np.append(found, stops[known])
+            label, status = net.flood(triangles, found, sides, stops)
+        return label, status
 
     def _twins(self) -> str:
         if self.net.twins is None:

@@ -63,12 +63,17 @@ class Kept:
         """The same without some tetrahedra."""
         return Kept.of(np.delete(self.tets, np.unique(bad), axis=0), len(self.is_inserted))
 
+    def parts(self) -> np.ndarray:
+        """Component of the kept tetrahedra that each inner point belongs to, (k,) int64."""
+        part = np.empty(len(self.is_inserted), np.int64)
+        kernels.tetra_components(np.ascontiguousarray(self.tets).reshape(-1), part)
+        return part
+
     def regions(self, outside: np.ndarray) -> np.ndarray:
         """Region of each kept tetrahedron from what lies outside each wall (f,), (t,) int64."""
         if not len(self.tets) or (outside == outside[0]).all():
             return np.full(len(self.tets), outside[0] if len(outside) else 0, np.int64)
-        part = np.empty(len(self.is_inserted), np.int64)
-        kernels.tetra_components(np.ascontiguousarray(self.tets).reshape(-1), part)
+        part = self.parts()
         region = np.full(len(part), -1)
         region[part[self.walls[:, 0]]] = outside
         return np.asarray(region[part[self.tets[:, 0]]])

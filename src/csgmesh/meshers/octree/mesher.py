@@ -1,0 +1,195 @@
+"""Tetrahedra of solids: a mesh of the surface, a lattice inside, Delaunay between."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Any
+
+from csgmesh.domain.plc import Plc
+from csgmesh.domain.surface_mesh import SurfaceMesh
+from csgmesh.errors import MeshingError
+from csgmesh.improve.tetrahedra import improve_tetrahedra
+from csgmesh.mesh import Mesh
+from csgmesh.meshers.octree.lattice import lattice
+from csgmesh.meshers.octree.sizes import SpaceSizes
+from csgmesh.meshers.surface import surface_mesh
+from csgmesh.meshers.tetrahedra import Tetrahedra, tetrahedralize
+from csgmesh.meshers.workspace import Progress
+from csgmesh.options import check_choice, check_flag, check_growth, check_whole
+
+CELLS = ("tetra",)
+#: Times that sizes are made smaller where triangles of the surface are no faces of tetrahedra.
+ROUNDS = 5
+#: By so much, each time.
+SMALLER = 0.5
+STAGES = 4
+
+
+@dataclass(frozen=True)
+class Octree:
+    """Tetrahedra from an octree: a body-centred lattice inside, a mesh of the exact surface around.
+
+    An octree is refined until its leaves are as small as the size, the surface's curvature and
+    short edges ask for, and balanced. The surface is meshed by itself, vertices on its exact
+    corners, curves and faces. Centres and corners of leaves inside, at some distance from it, are
+    the other vertices. Where leaves are equal the tetrahedra between two centres and an edge are
+    taken as they are; Delaunay tetrahedra fill what is left up to the surface. Then the smallest
+    dihedral angles are raised.
+
+    Parameters
+    ----------
+    cells : {"tetra"}
+        What to make.
+    gradation : float, default 0.3
+        Bound on the growth of sizes per unit of length.
+    improve : bool, default True
+        Whether to raise the smallest dihedral angles at last.
+    max_points : int, default 10**7
+        Bound on the number of points.
+
+    Raises
+    ------
+    InputError
+        If an option is out of range.
+
+    Guarantees
+    ----------
+    The mesh conforms, every cell is positively oriented by exact arithmetic, all feature edges and
+    corners of the domain are edges and vertices, and vertices on the boundary lie on its exact
+    surfaces. Regions and names are those of the domain. The same input gives the same bytes. Away
+    from the surface, where leaves are equal, cells are those of the body-centred cubic lattice,
+    whose dihedral angles are 60 and 90 degrees.
+
+    Exceptions
+    ----------
+    There is no bound on dihedral angles at the surface and where leaves of different sizes meet:
+    they are measured (see `csgmesh.quality`), not proved. Walls and gaps much thinner than the
+    size are crossed by one flat layer of cells. A leaf is half or twice its neighbour, so that
+    edges lie between 0.6 and 1.4 times a size that varies. Chords of curved faces are as short as
+    the domain's deviation asks for, even where the size allows longer ones.
+
+    Termination
+    -----------
+    Always: sizes are made smaller a bounded number of times where the surface cannot be filled; a
+    `MeshingError` with the place ends what would take more, a `BudgetError` what takes more points
+    than allowed.
+
+    References
+    ----------
+    .. [1] F. Labelle, J. R. Shewchuk, "Isosurface stuffing", ACM Trans. Graphics 26 (2007).
+    .. [2] N. Molino, R. Bridson, J. Teran, R. Fedkiw, "A crystalline, red green strategy for
+       meshing highly deformable objects with tetrahedra", 12th Int. Meshing Roundtable (2003).
+    .. [3] H. Si, "TetGen, a Delaunay-based quality tetrahedral mesh generator", ACM Trans.
+       Mathematical Software 41 (2015).
+
+    Examples
+    --------
+    >>> import csgmesh as cm
+    >>> mesh = cm.generate(cm.Box((0, 0, 0), (2, 1, 1)) - cm.Ball((1, 0.5, 0.5), 0.25), size=0.2)
+    >>> mesh.names
+    ('box.left', 'box.right', 'box.bottom', 'box.top', 'box.front', 'box.back', 'ball')
+    """
+
+    cells: str = "tetra"
+    gradation: float = 0.3
+    improve: bool = True
+    max_points: int = 10**7
+
+    dim = 3
+
+    def __post_init__(self) -> None:
+        check_choice("cells", self.cells, CELLS, "Octree")
+        checked = {
+            "gradation": check_growth("gradation", self.gradation),
+            "max_points": check_whole("max_points", self.max_points, 4),
+            "improve": check_flag("improve", self.improve),
+        }
+        for name, value in checked.items():
+            object.__setattr__(self, name, value)
+
+    def generate(self, domain: Plc, size: Any = None, progress: Progress | None = None) -> Mesh:
+        """Mesh a solid.
+
+        Parameters
+        ----------
+        domain : Plc
+        size : None, float, mapping, callable or SizeField
+            Wanted edge length; without one curvature and features decide.
+        progress : callable, optional
+            Called as ``progress(stage, done, total)``.
+
+        Returns
+        -------
+        Mesh
+            With the domain's names and regions.
+
+        Raises
+        ------
+        BudgetError
+            If `max_points` do not suffice.
+        MeshingError
+            If no refinement of the surface can be filled; with the place.
+        SizeError, NameLookupError
+            If the size is not positive and finite somewhere, or names nothing.
+        """
+        told = progress or _silent
+        sizes = SpaceSizes.of(domain, size, self.gradation, self.max_points)
+        for _ in range(ROUNDS):
+            told("surface", 0, STAGES)
+            surface = surface_mesh(domain, sizes, max_points=self.max_points, progress=progress)
+            told("lattice", 1, STAGES)
+            grid = lattice(sizes, surface, self.max_points)
+            told("tetrahedra", 2, STAGES)
+            filled = tetrahedralize(surface, grid.points, grid.kept)
+            if not len(filled.missing):
+                break
+            sizes = sizes.smaller_at(filled.places, SMALLER, self.max_points)
+        else:
+            x, y, z = filled.places[0]
+            raise MeshingError(
+                f"the surface at ({x:.6g}, {y:.6g}, {z:.6g}) cannot be filled with tetrahedra, "
+                f"however fine: {len(filled.missing)} triangles are missing after {ROUNDS} rounds"
+            )
+        del grid
+        told("improve", 3, STAGES)
+        if self.improve:
+            better = improve_tetrahedra(
+                filled.points,
+                filled.tets,
+                filled.region,
+                filled.triangles,
+                filled.face,
+                surface,
+                progress=progress,
+            )
+            filled = replace(
+                filled,
+                points=better[0],
+                tets=better[1],
+                region=better[2],
+                triangles=better[3],
+                face=better[4],
+            )
+        told("improve", STAGES, STAGES)
+        return tetra_mesh(filled, surface, {"method": "Octree", "options": dict(vars(self))})
+
+
+def tetra_mesh(filled: Tetrahedra, surface: SurfaceMesh, info: dict[str, object]) -> Mesh:
+    """The mesh of tetrahedra, its facets named as the faces of the surface mesh."""
+    domain = surface.plc
+    return Mesh(
+        filled.points,
+        {"tetra": filled.tets},
+        {"tetra": filled.region},
+        domain.region_names,
+        {"triangle": filled.triangles},
+        {"triangle": surface.face_marker[filled.face]},
+        domain.boundary_names,
+        {"triangle": surface.face_region[filled.face]},
+        domain=domain,  # type: ignore[arg-type]
+        info=info,
+    )
+
+
+def _silent(stage: str, done: int, total: int) -> None:
+    """Progress that nobody asked for."""
