@@ -19,8 +19,8 @@ Progress = Callable[[str, int, int], None]
 class Mesher(Protocol):
     """A method: an immutable object of options with one verb."""
 
-    def generate(self, domain: Pslg, size: Any = None, progress: Progress | None = None) -> Mesh:
-        """The mesh of a domain."""
+    def generate(self, domain: Any, size: Any = None, progress: Progress | None = None) -> Mesh:
+        """The mesh of a Pslg or, if its ``dim`` is 3, of a Plc."""
 
 
 def generate(
