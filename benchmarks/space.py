@@ -118,7 +118,7 @@ def graded() -> list[Row]:
 
     def by_name(fine: float) -> Arrays:
         size = {"bore": fine, "default": 100 * fine}
-        mesh = cm.generate(peers.solid(), cm.Octree(), size=size)
+        mesh = cm.generate(peers.solid(), cm.Octree(), size=size, deviation=peers.DEVIATION)
         return mesh.points, mesh.cells["tetra"]
 
     def gmsh_hxt(fine: float) -> Arrays:
@@ -165,7 +165,7 @@ def memory() -> list[Row]:
     for size in (0.045, 0.02):
         cm.generate(peers.solid(), cm.Octree(), size=0.2)
         tracemalloc.start()
-        mesh = cm.generate(peers.solid(), cm.Octree(), size=size)
+        mesh = cm.generate(peers.solid(), cm.Octree(), size=size, deviation=peers.DEVIATION)
         held, peak = tracemalloc.get_traced_memory()
         tracemalloc.stop()
         rows.append({"cells": mesh.n_cells, "bytes_per_cell": (peak - held) / mesh.n_cells})

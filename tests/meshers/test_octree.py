@@ -110,7 +110,7 @@ mesh: {octree: {cells: tetra}, size: {default: 0.3, part.void: 0.1}}
 
 
 def test_errors_state_the_rule_the_value_and_the_place():
-    with pytest.raises(InputError, match=r"cells must be one of 'tetra'.*got 'cubes'"):
+    with pytest.raises(InputError, match=r"'tetra'.*'hexahedron'.*got 'cubes'"):
         cm.Octree(cells="cubes")
     with pytest.raises(InputError, match="gradation must be positive"):
         cm.Octree(gradation=0)
@@ -124,3 +124,25 @@ def test_errors_state_the_rule_the_value_and_the_place():
         cm.generate(SOLID, cm.Octree(max_points=1000), size=0.02)
     with pytest.raises(InputError, match="Octree meshes domains in space; this one lies in the p"):
         cm.generate(cm.Box((0, 0), (1, 1)), cm.Octree())
+
+
+def test_hexahedra_by_the_same_mesher() -> None:
+    plate = cm.Box((0, 0, 0), (2, 2, 0.5), name="plate") - cm.Cylinder(
+        (1, 1, -1), (1, 1, 1), 0.4, name="bore"
+    )
+    mesh = cm.generate(plate, cm.Octree(cells="hexahedron"), size={"bore": 0.2, "default": 0.3})
+    assert list(mesh.cells) == ["hexahedron"]
+    certificate = cm.check(mesh, plate)
+    assert certificate.ok, certificate
+    quality = cm.quality(mesh)
+    assert quality.scaled_jacobian.min() > 0.5
+    # The smallest size holds everywhere.
+    assert 0.15 < np.median(quality.max_edge) < 0.3
+    with pytest.raises(cm.MeshingError, match="one material"):
+        cm.generate(
+            cm.Regions({"a": plate, "b": cm.Ball((0.3, 0.3, 0.25), 0.1)}),
+            cm.Octree(cells="hexahedron"),
+            size=0.2,
+        )
+    with pytest.raises(cm.SizeError):
+        cm.generate(plate, cm.Octree(cells="hexahedron"), size=0)

@@ -191,10 +191,12 @@ def with_sheets(blocks: Blocks, strata: Strata, ways: np.ndarray) -> Blocks:
 
 
 def _smallest(domain: Plc, sizes: Callable[[np.ndarray], np.ndarray]) -> float:
-    """The smallest size at the domain's points and on a lattice over its box."""
+    """The smallest size at the domain's points and at those of a lattice that lie inside."""
     low, high = domain.bounds()
     lines = [np.linspace(a, b, 17) for a, b in zip(low, high, strict=True)]
     inner = np.stack(np.meshgrid(*lines, indexing="ij"), axis=3).reshape(-1, 3)
+    if domain.oracle is not None:
+        inner = inner[domain.oracle.region(inner) >= 0]
     least = float(np.min(sizes(np.concatenate([domain.points, inner]))))
     if not 0.0 < least < np.inf:
         raise SizeError(f"size must be positive and finite everywhere; got {least!r}")

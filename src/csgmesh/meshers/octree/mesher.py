@@ -5,19 +5,24 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import Any
 
+import numpy as np
+
 from csgmesh.domain.plc import Plc
 from csgmesh.domain.surface_mesh import SurfaceMesh
 from csgmesh.errors import MeshingError
 from csgmesh.improve.tetrahedra import improve_tetrahedra
 from csgmesh.mesh import Mesh
+from csgmesh.meshers.hexahedra import hexahedral_mesh
 from csgmesh.meshers.octree.lattice import lattice
 from csgmesh.meshers.octree.sizes import SpaceSizes
 from csgmesh.meshers.surface import surface_mesh
 from csgmesh.meshers.tetrahedra import Tetrahedra, tetrahedralize
 from csgmesh.meshers.workspace import Progress
 from csgmesh.options import check_choice, check_flag, check_growth, check_whole
+from csgmesh.size.field import Source
+from csgmesh.size.resolve import resolve
 
-CELLS = ("tetra",)
+CELLS = ("tetra", "hexahedron")
 #: Times that sizes are made smaller where triangles of the surface are no faces of tetrahedra.
 ROUNDS = 5
 #: By so much, each time.
@@ -38,8 +43,10 @@ class Octree:
 
     Parameters
     ----------
-    cells : {"tetra"}
-        What to make.
+    cells : {"tetra", "hexahedron"}
+        What to make. Hexahedra come from a grid whose planes fit the flat faces, with sheets of
+        cells along the others; the smallest size holds everywhere, and `gradation` and `improve`
+        do not matter.
     gradation : float, default 0.3
         Bound on the growth of sizes per unit of length.
     improve : bool, default True
@@ -60,8 +67,13 @@ class Octree:
     from the surface, where leaves are equal, cells are those of the body-centred cubic lattice,
     whose dihedral angles are 60 and 90 degrees.
 
+    Jacobians of hexahedra are positive all over each cell, by Bernstein bounds.
+
     Exceptions
     ----------
+    Hexahedra are of one material, and chords of curved faces as long as the size. Solids they do
+    not resolve even at half the size are refused with the place: mostly reentrant edges between two
+    faces of which none is flat and perpendicular to an axis, as where two pipes meet.
     There is no bound on dihedral angles at the surface and where leaves of different sizes meet:
     they are measured (see `csgmesh.quality`), not proved. Walls and gaps much thinner than the
     size are crossed by one flat layer of cells. A leaf is half or twice its neighbour, so that
@@ -132,6 +144,12 @@ class Octree:
         SizeError, NameLookupError
             If the size is not positive and finite somewhere, or names nothing.
         """
+        if self.cells == "hexahedron":
+            sizes = even_sizes(domain, size, self.gradation, self.max_points)
+            return hexahedral_mesh(domain, sizes, max_points=self.max_points, progress=progress)
+        return self._tetrahedra(domain, size, progress)
+
+    def _tetrahedra(self, domain: Plc, size: Any, progress: Progress | None) -> Mesh:
         told = progress or _silent
         sizes = SpaceSizes.of(domain, size, self.gradation, self.max_points)
         for _ in range(ROUNDS):
@@ -172,6 +190,23 @@ class Octree:
             )
         told("improve", STAGES, STAGES)
         return tetra_mesh(filled, surface, {"method": "Octree", "options": dict(vars(self))})
+
+
+def even_sizes(domain: Plc, size: Any, gradation: float, max_points: int) -> Source:
+    """What is asked for by any part of a size, as a function of points; or what the boundary needs.
+
+    Raises
+    ------
+    SizeError, NameLookupError
+        If the size is no size, or names nothing.
+    """
+    asked = resolve(size, domain)  # type: ignore[arg-type]
+    if asked is None:
+        return SpaceSizes.of(domain, None, gradation, max_points)
+    sources = [source for _, source in (*asked.boundary, *asked.region)]
+    if asked.default is not None:
+        sources.append(asked.default)
+    return lambda points: np.min([np.broadcast_to(s(points), len(points)) for s in sources], axis=0)
 
 
 def tetra_mesh(filled: Tetrahedra, surface: SurfaceMesh, info: dict[str, object]) -> Mesh:
