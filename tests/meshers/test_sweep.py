@@ -102,6 +102,62 @@ def test_sizes_by_name_and_by_place() -> None:
     assert by_place.n_cells > cm.generate(WASHER, cm.Sweep(), size=0.3).n_cells
 
 
+def heights(mesh: cm.Mesh) -> np.ndarray:
+    """Thickness of each layer of an extrusion along z."""
+    return np.diff(np.unique(mesh.points[:, 2]))
+
+
+BEAM = cm.Extrude(cm.Box((0, 0), (1, 1)), 4, name="beam")
+
+
+@pytest.mark.parametrize("made", [lambda h: h, lambda h: cm.minimum(h, 0.5)])
+def test_layers_follow_a_size_that_varies_along_the_sweep(made) -> None:
+    size = made(lambda p: 0.05 + 0.1 * p[:, 2])
+    mesh = cm.generate(BEAM, cm.Sweep(cm.Structured()), size=size)
+    thick = heights(mesh)
+    middle = np.unique(mesh.points[:, 2])[:-1] + thick / 2
+    # The integral of 1 / h is 10 log 9.
+    assert mesh.info["layers"] == len(thick) == 22
+    assert (np.diff(thick) > 0).all()
+    np.testing.assert_allclose(thick, 0.05 + 0.1 * middle, rtol=0.02)
+    assert cm.check(mesh, BEAM).ok
+    # Where the number is given, too, the layers are as thick as the size in proportion.
+    fewer = heights(cm.generate(BEAM, cm.Sweep(cm.Structured(), layers=11), size=size))
+    assert len(fewer) == 11
+    np.testing.assert_allclose(fewer, thick[::2] + thick[1::2], rtol=1e-9)
+
+
+def test_a_size_of_an_end_makes_its_layers_thin() -> None:
+    size = {"beam.start": 0.01, "beam.end": 0.03, "default": 0.5}
+    mesh = cm.generate(BEAM, cm.Sweep(cm.Structured()), size=size)
+    thick = heights(mesh)
+    assert 0.009 < thick[0] < 0.0125
+    assert 0.025 < thick[-1] < 0.04
+    assert 0.4 < thick.max() < 0.51
+    ratio = thick[1:] / thick[:-1]
+    assert ratio.max() < 1.37
+    assert ratio.min() > 1 / 1.37
+    assert cm.check(mesh, BEAM).ok
+    only_there = heights(cm.generate(BEAM, cm.Sweep(cm.Structured()), size={"beam.end": 0.03}))
+    assert only_there[-1] < 0.04
+
+
+def test_layers_of_a_turn_follow_the_size() -> None:
+    ring = cm.Revolve(cm.Disk((2, 0), 0.5), name="ring")
+    mesh = cm.generate(ring, cm.Sweep(), size=lambda p: 0.15 + 0.1 * (p[:, 0] < 0) * -p[:, 0])
+    assert cm.check(mesh, ring).ok
+    turn = np.unique(np.degrees(np.arctan2(mesh.points[:, 1], mesh.points[:, 0])).round(9))
+    thick = np.diff(turn)
+    assert thick[turn[:-1] < -170].max() > 1.5 * thick[np.abs(turn[:-1]) < 40].max()
+    # At the rim, 2.5 from the axis, no edge is longer than wanted where the size is smallest.
+    assert np.radians(thick).min() * 2.5 < 0.15 * 1.01
+
+
+def test_a_size_that_varies_across_alone_leaves_layers_even() -> None:
+    mesh = cm.generate(BEAM, cm.Sweep(), size=lambda p: 0.25 + 0.25 * p[:, 0])
+    np.testing.assert_allclose(heights(mesh), 0.25, rtol=1e-9)
+
+
 def test_facets_carry_the_names_of_their_parts() -> None:
     mesh = cm.generate(WASHER, cm.Sweep(), size=0.3)
     for name, z in (("extrude.start", 0.0), ("extrude.end", 0.5)):
@@ -117,6 +173,26 @@ def test_the_same_bytes_every_time() -> None:
 
 
 REFUSED = [
+    (
+        lambda: cm.generate(WASHER, cm.Sweep(max_points=100), size=0.1),
+        cm.MeshingError,
+        "max_points",
+    ),
+    (
+        lambda: cm.generate(WASHER, cm.Sweep(layers=10**9), size=0.5),
+        cm.BudgetError,
+        "1000000000 layers of .* max_points is 10000000",
+    ),
+    (
+        lambda: cm.generate(WASHER, cm.Sweep(), size={"extrude.start": 0.0, "default": 1}),
+        cm.SizeError,
+        "size of 'extrude.start' must be positive",
+    ),
+    (
+        lambda: cm.generate(WASHER, cm.Sweep(), size=lambda p: 0.3 - p[:, 2]),
+        cm.SizeError,
+        "positive",
+    ),
     (lambda: cm.Sweep(layers=0), cm.InputError, "layers must be at least 1; got 0"),
     (lambda: cm.Sweep(layers=2.5), cm.InputError, "layers must be a whole number; got 2.5"),
     (lambda: cm.Sweep(mesher=3), cm.InputError, "mesher must be a mesher of the plane"),

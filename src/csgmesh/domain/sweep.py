@@ -42,3 +42,13 @@ class SweptDomain:
     def is_closed(self) -> bool:
         """Whether the sweep ends where it began."""
         return self.is_turned and self.amount >= 360.0
+
+    def carried(self, points: np.ndarray, amount: float) -> np.ndarray:
+        """Points of the profile (n, 2) at a station of the sweep, (n, 3)."""
+        if self.is_turned:
+            turn = np.radians(amount)
+            c, s = np.cos(turn), np.sin(turn)
+            local = np.column_stack([c * points[:, 0], s * points[:, 0], points[:, 1]])
+        else:
+            local = np.column_stack([points, np.full(len(points), amount)])
+        return np.asarray(local @ self.matrix.T + self.offset)

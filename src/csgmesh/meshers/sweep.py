@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -15,12 +15,10 @@ from csgmesh.errors import InputError, MeshingError
 from csgmesh.mesh import Mesh
 from csgmesh.meshers.delaunay_refinement import DelaunayRefinement
 from csgmesh.meshers.per_region.mesher import Mesher
+from csgmesh.meshers.stations import source_of_place, stations
 from csgmesh.meshers.swept_cells import swept_cells, swept_facets
 from csgmesh.meshers.workspace import Progress
-
-#: Fewest layers of a full turn: with fewer its cells would be thinner at the axis than at the rim
-#: by more than a right angle.
-_FEWEST_AROUND = 8
+from csgmesh.options import check_whole
 
 
 @dataclass(frozen=True)
@@ -37,7 +35,10 @@ class Sweep:
         For the profile; `DelaunayRefinement` unless given.
     layers : int, optional
         Layers along the sweep; by default as many as the size asks for, or, without one, as make
-        cells as long as the profile's edges.
+        cells as long as the profile's edges. Either way they are as thick as the size asks for
+        where it varies along the sweep or an end has one of its own.
+    max_points : int, default 10**7
+        Most points, of the profile and of the mesh.
 
     Raises
     ------
@@ -52,9 +53,11 @@ class Sweep:
 
     Exceptions
     ----------
-    A solid that is not a single extrusion, revolution, box or cylinder is refused. Sizes vary
-    across the profile, not along the sweep: where a callable varies along it, its smallest value
-    counts.
+    A solid that is not a single extrusion, revolution, box or cylinder is refused. Each layer is
+    the same mesh of the profile, as thick everywhere: where a size varies along the sweep and
+    across the profile, the smallest along counts across, and the smallest across counts along. A
+    size of an end makes layers thin near it, a size of a side the profile's edges short; fields
+    that are tied to names, such as `NearSize`, take those of the profile.
 
     Termination
     -----------
@@ -78,6 +81,7 @@ class Sweep:
 
     mesher: Mesher | None = None
     layers: int | None = None
+    max_points: int = 10**7
 
     dim = 3
 
@@ -96,6 +100,7 @@ class Sweep:
             raise InputError(f"layers must be a whole number; got {layers!r}")
         if layers is not None and layers < 1:
             raise InputError(f"layers must be at least 1; got {layers!r}")
+        check_whole("max_points", self.max_points, 16)
 
     def generate(self, domain: Plc, size: Any = None, progress: Progress | None = None) -> Mesh:
         """Mesh a solid.
@@ -118,6 +123,8 @@ class Sweep:
         ------
         MeshingError
             If the domain is not swept by a planar one, or the profile cannot be meshed.
+        BudgetError
+            If `max_points` do not suffice.
         SizeError, NameLookupError
             If the size is not positive and finite somewhere, or names nothing.
         """
@@ -127,27 +134,17 @@ class Sweep:
                 "Sweep meshes a single extrusion, revolution, box or cylinder; this solid is a "
                 "combination. Combine in the plane first, then extrude or revolve"
             )
-        mesher = self.mesher or DelaunayRefinement()
+        mesher = self._profile_mesher()
         flat = mesher.generate(sweep.profile, planar_size(size, sweep, domain), progress)
-        n_layers = self.layers or self._layers(flat, sweep, size)
-        return swept_mesh(flat, sweep, domain, n_layers, self._info(mesher, n_layers))
+        at = stations(flat, sweep, domain, size, self.layers, self.max_points)
+        info = {"method": "Sweep", "profile": type(mesher).__name__, "layers": len(at) - 1}
+        return swept_mesh(flat, sweep, domain, at, info)
 
-    def _layers(self, flat: Mesh, sweep: SweptDomain, size: Any) -> int:
-        stretch = float(np.linalg.norm(sweep.matrix, 2))
-        asked = size.get("default") if isinstance(size, Mapping) else size
-        if isinstance(asked, (int, float)):
-            edge = float(asked) / stretch
-        else:
-            corners = flat.points[next(iter(flat.cells.values()))]
-            edge = float(np.median(np.sqrt(((corners[:, 1] - corners[:, 0]) ** 2).sum(axis=1))))
-        if not sweep.is_turned:
-            return max(round(sweep.amount / edge), 1)
-        rim = float(flat.points[:, 0].max()) * np.radians(sweep.amount)
-        least = int(np.ceil(_FEWEST_AROUND * sweep.amount / 360.0))
-        return max(round(rim / edge), least)
-
-    def _info(self, mesher: Any, n_layers: int) -> dict[str, object]:
-        return {"method": "Sweep", "profile": type(mesher).__name__, "layers": n_layers}
+    def _profile_mesher(self) -> Any:
+        mesher: Any = self.mesher or DelaunayRefinement()
+        if getattr(mesher, "max_points", 0) > self.max_points:
+            return replace(mesher, max_points=self.max_points)
+        return mesher
 
 
 def planar_size(size: Any, sweep: SweptDomain, domain: Plc) -> Any:
@@ -156,25 +153,26 @@ def planar_size(size: Any, sweep: SweptDomain, domain: Plc) -> Any:
     if size is None:
         return None
     if not isinstance(size, Mapping):
-        return _flattened(size, sweep, stretch)
+        return _flattened(size, sweep, stretch, domain)
     out: dict[str, Any] = {}
     solid = {name: flat for flat, name in sweep.side.items()}
     for key, value in size.items():
         if key == "default":
-            out["default"] = _flattened(value, sweep, stretch)
+            out["default"] = _flattened(value, sweep, stretch, domain)
             continue
         for name in find_names(key, [*domain.names, *domain.region_names]):
             if name in solid:
-                out[solid[name]] = _flattened(value, sweep, stretch)
+                out[solid[name]] = _flattened(value, sweep, stretch, domain)
             elif name in domain.region_names:
-                out["default"] = _flattened(value, sweep, stretch)
+                out["default"] = _flattened(value, sweep, stretch, domain)
     return out
 
 
-def _flattened(value: Any, sweep: SweptDomain, stretch: float) -> Any:
-    if not callable(value):
-        return value / stretch if isinstance(value, (int, float)) else value
-    return _AlongTheSweep(value, sweep, stretch)
+def _flattened(value: Any, sweep: SweptDomain, stretch: float, domain: Plc) -> Any:
+    if isinstance(value, (int, float)):
+        return value / stretch
+    source = source_of_place(value, "size", domain)
+    return value if source is None else _AlongTheSweep(source, sweep, stretch)
 
 
 @dataclass(frozen=True, eq=False)
@@ -189,25 +187,15 @@ class _AlongTheSweep:
         stations = np.linspace(0.0, self.sweep.amount, 9)
         values = []
         for at in stations:
-            values.append(np.asarray(self.size(carried(points, self.sweep, at))))
+            values.append(np.asarray(self.size(self.sweep.carried(points, at))))
         return np.min(values, axis=0) / self.stretch
 
 
-def carried(points: np.ndarray, sweep: SweptDomain, amount: float) -> np.ndarray:
-    """Points of the profile (n, 2) at a station of the sweep, (n, 3)."""
-    if sweep.is_turned:
-        turn = np.radians(amount)
-        c, s = np.cos(turn), np.sin(turn)
-        local = np.column_stack([c * points[:, 0], s * points[:, 0], points[:, 1]])
-    else:
-        local = np.column_stack([points, np.full(len(points), amount)])
-    return np.asarray(local @ sweep.matrix.T + sweep.offset)
-
-
 def swept_mesh(
-    flat: Mesh, sweep: SweptDomain, domain: Plc, n_layers: int, info: dict[str, object]
+    flat: Mesh, sweep: SweptDomain, domain: Plc, at: np.ndarray, info: dict[str, object]
 ) -> Mesh:
-    """The planar mesh in layers along the sweep."""
+    """The planar mesh in layers between stations of the sweep."""
+    n_layers = len(at) - 1
     snap = sweep.profile.snap
     on_axis = np.zeros(flat.n_points, bool)
     place = flat.points.copy()
@@ -215,11 +203,10 @@ def swept_mesh(
         on_axis = np.abs(place[:, 0]) <= snap
         place[on_axis, 0] = 0.0
     n_stations = n_layers + (not sweep.is_closed)
-    stations = sweep.amount * np.arange(n_stations) / n_layers
     n = flat.n_points
     number = np.arange(n_stations * n).reshape(n_stations, n)
     number[1:, on_axis] = number[0, on_axis]
-    points = np.concatenate([carried(place, sweep, float(a)) for a in stations])
+    points = np.concatenate([sweep.carried(place, float(a)) for a in at[:n_stations]])
     after = number[np.arange(1, n_layers + 1) % n_stations]
     # Counterclockwise in (r, z) is clockwise seen along the turn, and mirroring turns again.
     flips = sweep.is_turned != bool(np.linalg.det(sweep.matrix) < 0.0)
