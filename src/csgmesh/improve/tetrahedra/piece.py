@@ -150,7 +150,10 @@ class Piece:
     def put_back(
         self, points: np.ndarray, tets: np.ndarray, region: np.ndarray, scores: np.ndarray
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-        """The whole mesh with this piece as it is now; the surface is brought up to date, too."""
+        """The whole mesh with this piece as it is now; the surface is brought up to date, too.
+
+        The arrays given are written to, so that the good cells of a large mesh stay where they are.
+        """
         a = self.arrays
         n, n_now = self.n, int(a.count[VERTICES])
         xyz = a.xyz.reshape(-1, 3)
@@ -159,12 +162,28 @@ class Piece:
         points[self.vertices] = xyz[:n]
         corner = a.corner.reshape(-1, 4)
         used = corner[:, 0] >= 0
-        tets = np.concatenate([tets[~self.chosen], number[corner[used]]])
-        region = np.concatenate([region[~self.chosen], a.region[used]])
-        scores = np.concatenate([scores[~self.chosen], a.score[used]])
+        places = np.flatnonzero(self.chosen)
+        tets = _replaced(tets, places, number[corner[used]])
+        region = _replaced(region, places, a.region[used])
+        scores = _replaced(scores, places, a.score[used])
         self.chords.triangles[self.walls] = self.vertices[a.triangle.reshape(-1, 3)]
         self.chords.normals[self.walls] = a.normal.reshape(-1, 3, 3)
         return points, tets, region, scores
+
+
+def _replaced(rows: np.ndarray, places: np.ndarray, new: np.ndarray) -> np.ndarray:
+    """Rows of which those at `places`, ascending, are taken by new ones, more or fewer."""
+    n, k = len(places), len(new)
+    if k >= n:
+        rows[places] = new[:n]
+        return np.concatenate([rows, new[n:]]) if k > n else rows
+    rows[places[:k]] = new
+    # The last rows move to where nothing is left.
+    free, length = places[k:], len(rows) - (n - k)
+    stay = np.ones(n - k, bool)
+    stay[free[free >= length] - length] = False
+    rows[free[free < length]] = rows[length:][stay]
+    return rows[:length]
 
 
 def _neighbours(ends: np.ndarray, n: int) -> tuple[np.ndarray, np.ndarray]:
