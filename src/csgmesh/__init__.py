@@ -93,6 +93,7 @@ _HOME = {
         "QuadPairing",
         "Quadtree",
         "Structured",
+        "SurfaceRefinement",
         "Sweep",
         "worst_cells",
     ),
@@ -181,6 +182,7 @@ __all__ = [
     "SizeError",
     "SizeField",
     "Structured",
+    "SurfaceRefinement",
     "Sweep",
     "Tetrahedron",
     "Torus",
@@ -302,6 +304,7 @@ if TYPE_CHECKING:
         QuadPairing,
         Quadtree,
         Structured,
+        SurfaceRefinement,
         Sweep,
         worst_cells,
     )

@@ -161,14 +161,17 @@ def check(mesh: Mesh, shape: Any = None) -> Certificate:
 
 def _check_space(mesh: Mesh, shape: Any) -> Certificate:
     from csgmesh.measures.space.certificate import check_space
+    from csgmesh.measures.space.surface import check_surface
+    from csgmesh.mesh.surfaces import is_surface
 
+    verify = check_surface if is_surface(mesh) else check_space
     if shape is None:
-        return check_space(mesh)
+        return verify(mesh)
     reference = evaluate(shape)
     if reference.dim != 3:
         raise InputError(f"check: the mesh is in space, the shape in the plane; got {shape!r}")
     contains = reference.oracle.region if reference.oracle is not None else None
-    return check_space(mesh, reference, contains)
+    return verify(mesh, reference, contains)
 
 
 def _reference(mesh: Mesh, shape: Any) -> Pslg:

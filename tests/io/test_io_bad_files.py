@@ -113,13 +113,16 @@ def test_msh_errors_name_the_section(tmp_path, plate):
             cm.read(path)
 
 
-def test_surfaces_in_space_are_refused(tmp_path):
+def test_surfaces_in_space_are_read_from_vtu_and_refused_elsewhere(tmp_path):
     import meshio
 
     points = np.eye(4, 3)
-    meshio.write(tmp_path / "b.vtu", meshio.Mesh(points, [("triangle", [[0, 1, 2]])]))
+    for suffix in (".vtu", ".vtk"):
+        meshio.write(tmp_path / f"b{suffix}", meshio.Mesh(points, [("triangle", [[0, 1, 2]])]))
+    mesh = cm.read(tmp_path / "b.vtu")
+    assert (mesh.dim, mesh.names, mesh.region_names) == (3, ("boundary",), ("domain",))
     with pytest.raises(cm.FileFormatError, match="point 2 has z = 1"):
-        cm.read(tmp_path / "b.vtu")
+        cm.read(tmp_path / "b.vtk")
 
 
 @pytest.mark.parametrize(

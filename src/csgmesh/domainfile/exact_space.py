@@ -53,12 +53,16 @@ def filled_volume(mesh: Mesh, region: str | None = None) -> Measured:
         The mesh is plane.
     """
     from csgmesh.measures.space.sags import facet_sags, triangle_areas
+    from csgmesh.measures.space.surface import enclosed_volumes
+    from csgmesh.mesh.surfaces import is_surface
 
     case = _case(mesh, "volumes")
     names = mesh.region_names if region is None else find_names(region, mesh.region_names)
     wanted = [i for i, name in enumerate(mesh.region_names) if name in names]
-    inside = np.isin(case.cell_region[:-1], wanted)
-    total = float(case.quality.volume[inside].sum())
+    if is_surface(mesh):
+        total = float(enclosed_volumes(case)[wanted].sum())
+    else:
+        total = float(case.quality.volume[np.isin(case.cell_region[:-1], wanted)].sum())
     if case.domain is None:
         return Measured(total, None, 0.0)
     side = np.isin(case.facet_region, wanted)

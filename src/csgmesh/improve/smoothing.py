@@ -12,6 +12,7 @@ from csgmesh.improve.stars import BEST, CENTROIDS, NEIGHBOURS, Stars
 from csgmesh.improve.tetrahedra.smoothing import smooth_tetrahedra
 from csgmesh.improve.workpiece import Progress, Workpiece
 from csgmesh.mesh import Mesh
+from csgmesh.mesh.surfaces import require_solid_cells
 from csgmesh.options import near
 
 METHODS = ("laplace", "odt", "optimize")
@@ -72,6 +73,7 @@ def smooth(
     if mesh.dim == 3 and set(mesh.cells) == {"tetra"} and set(mesh.facets) <= {"triangle"}:
         return smooth_tetrahedra(mesh, method, sweeps, progress)
     if mesh.dim == 3:
+        require_solid_cells(mesh.cells, "smooth")
         return smooth_cells(mesh, method, sweeps)
     if set(mesh.cells) - {"triangle"}:
         return _smooth_with_quads(mesh, method, sweeps, progress)

@@ -15,6 +15,7 @@ import numpy as np
 
 from csgmesh.errors import FileFormatError, InputError
 from csgmesh.io.assemble_space import INNER, OUTER, dimension, space_mesh
+from csgmesh.io.assemble_surface import surface_mesh
 from csgmesh.io.sides import missing_edges, oriented_edges
 from csgmesh.mesh import KINDS, Mesh
 from csgmesh.mesh.lagrange import lattice
@@ -43,7 +44,9 @@ class Numbered:
 class Listing:
     """Blocks of entities in the order of a file; see `add`.
 
-    Once there is a mesh, `number` holds the number in it of each point, -1 for those left out.
+    Of surfaces in space, `beside` has the regions behind and in front of each, (k, 2), block for
+    block. Once there is a mesh, `number` holds the number in it of each point, -1 for those left
+    out.
     """
 
     path: Path
@@ -51,6 +54,7 @@ class Listing:
     regions: Numbered = field(default_factory=Numbered)
     markers: Numbered = field(default_factory=Numbered)
     blocks: dict[str, list[tuple[np.ndarray, np.ndarray]]] = field(default_factory=dict)
+    beside: dict[str, list[np.ndarray]] = field(default_factory=dict)
     number: np.ndarray = field(default_factory=lambda: np.zeros(0, np.int64))
 
     def region_number(self, tag: int) -> int:
@@ -98,7 +102,9 @@ class Listing:
 
     def mesh(self) -> Mesh:
         """The mesh; see the module."""
-        return space_mesh(self) if dimension(self.blocks) == 3 else _mesh(self)
+        if dimension(self.blocks) == 3:
+            return space_mesh(self)
+        return surface_mesh(self) if self.beside else _mesh(self)
 
 
 def _mesh(listing: Listing) -> Mesh:

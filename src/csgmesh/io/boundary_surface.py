@@ -10,9 +10,12 @@ import numpy as np
 from csgmesh.errors import InputError
 from csgmesh.mesh import KINDS, Mesh
 from csgmesh.mesh.faces import canonical_faces, faces_of
+from csgmesh.mesh.surfaces import is_surface, with_facets
 
 if TYPE_CHECKING:
     import trimesh
+
+_NONE = np.zeros(0, np.int64)
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,7 +53,8 @@ def boundary_surface(mesh: Mesh, *, interfaces: bool = False) -> BoundarySurface
     """The outer boundary of a mesh of space, with or without the interfaces of its regions.
 
     Quads are cut along their shorter diagonals; curved faces count as straight ones. Of a mesh
-    whose cells are triangles and quads in space, the surface is the cells themselves.
+    whose cells are triangles and quads in space, the surface is its facets, or the cells if it has
+    none.
 
     Raises
     ------
@@ -61,7 +65,7 @@ def boundary_surface(mesh: Mesh, *, interfaces: bool = False) -> BoundarySurface
         raise InputError("a surface needs a mesh of space; this one lies in the plane")
     solid = {k: v[:, : KINDS[k].n_corners] for k, v in mesh.cells.items() if KINDS[k].dim == 3}
     if not solid:
-        rows, marker, region = _own_cells(mesh)
+        rows, marker, region = _own_facets(mesh, interfaces)
     else:
         rows, marker, region = _faces(mesh, solid, interfaces)
     if not len(rows):
@@ -96,14 +100,18 @@ def _faces(
     return rows[shown], marker[shown], region[shown]
 
 
-def _own_cells(mesh: Mesh) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    rows, regions = [np.zeros((0, 4), np.int64)], [np.zeros(0, np.int64)]
-    for kind, cells in mesh.cells.items():
-        corners = cells[:, : KINDS[kind].n_corners]
+def _own_facets(mesh: Mesh, interfaces: bool) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Facets of a surface (f, 4), -1 last for triangles; markers and regions."""
+    mesh = with_facets(mesh)
+    rows, markers, regions = [np.zeros((0, 4), np.int64)], [_NONE], [np.zeros((0, 2), np.int64)]
+    for kind, facets in mesh.facets.items():
+        corners = facets[:, : KINDS[kind].n_corners]
         rows.append(np.column_stack([corners, np.full((len(corners), 4 - corners.shape[1]), -1)]))
-        regions.append(mesh.cell_region[kind])
-    table, region = np.concatenate(rows), np.concatenate(regions)
-    return table, np.full(len(table), -1), np.column_stack([region, np.full(len(region), -1)])
+        markers.append(mesh.facet_marker[kind])
+        regions.append(mesh.facet_region[kind])
+    table, marker, region = (np.concatenate(part) for part in (rows, markers, regions))
+    shown = np.full(len(table), True) if interfaces else (region < 0).any(axis=1)
+    return table[shown], marker[shown], region[shown]
 
 
 def _triangulated(points: np.ndarray, rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -208,8 +216,11 @@ def to_pyvista(mesh: Mesh) -> Any:
     from csgmesh.mesh.nodes import with_nodes
 
     mesh = with_nodes(mesh, EQUISPACED)
+    mesh = with_facets(mesh) if is_surface(mesh) else mesh
+    is_skin = is_surface(mesh)
+    blocks = [*mesh.cells.items()] if not is_skin else []
     connectivity, types = [], []
-    for kind, rows in (*mesh.cells.items(), *mesh.facets.items()):
+    for kind, rows in (*blocks, *mesh.facets.items()):
         order = vtk_order(kind)
         rows = rows if order is None else rows[:, order]
         connectivity.append(np.column_stack([np.full(len(rows), rows.shape[1]), rows]).ravel())
@@ -217,13 +228,17 @@ def to_pyvista(mesh: Mesh) -> Any:
     points = np.zeros((mesh.n_points, 3))
     points[:, : mesh.dim] = mesh.points
     grid = pyvista.UnstructuredGrid(np.concatenate(connectivity), np.concatenate(types), points)
-    region = np.concatenate([*mesh.cell_region.values(), np.full(mesh.n_facets, -1)])
-    marker = np.concatenate([np.full(mesh.n_cells, -1), *mesh.facet_marker.values()])
+    if is_skin:
+        region = np.concatenate([sides[:, 0] for sides in mesh.facet_region.values()])
+        marker = np.concatenate([*mesh.facet_marker.values()])
+    else:
+        region = np.concatenate([*mesh.cell_region.values(), np.full(mesh.n_facets, -1)])
+        marker = np.concatenate([np.full(mesh.n_cells, -1), *mesh.facet_marker.values()])
     joined = np.array([",".join(names) for names in mesh.boundary_names] + [""])
     regions = np.array([*mesh.region_names, ""])
     grid.cell_data["region"] = region
     grid.cell_data["marker"] = marker
-    grid.cell_data["name"] = np.where(region >= 0, regions[region], joined[marker])
+    grid.cell_data["name"] = np.where(marker < 0, regions[region], joined[marker])
     grid.field_data["region_names"] = regions[:-1]
     grid.field_data["boundary_names"] = joined[:-1]
     return grid

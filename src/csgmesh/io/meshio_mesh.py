@@ -15,6 +15,7 @@ from csgmesh.io.members import members
 from csgmesh.mesh import KINDS, Mesh
 from csgmesh.mesh.lagrange import EQUISPACED
 from csgmesh.mesh.nodes import with_nodes
+from csgmesh.mesh.surfaces import is_surface, with_facets
 
 if TYPE_CHECKING:
     import meshio
@@ -39,7 +40,8 @@ def to_meshio(mesh: Mesh) -> meshio.Mesh:
     meshio.Mesh
         A block a kind of cell, then a block a kind of facet, then embedded points as `vertex`
         cells. ``cell_data["region"]`` numbers the regions (-1 on facets), ``cell_data["marker"]``
-        the boundaries (-1 on cells); ``cell_sets`` holds every name.
+        the boundaries (-1 on cells); ``cell_sets`` holds every name. Of a surface in space each
+        triangle comes once, with both numbers.
 
     Examples
     --------
@@ -55,6 +57,8 @@ def to_meshio(mesh: Mesh) -> meshio.Mesh:
     import meshio
 
     mesh = with_nodes(mesh, EQUISPACED)
+    if is_surface(mesh):
+        return _skin(with_facets(mesh))
     blocks = [*mesh.cells.items(), *mesh.facets.items()]
     regions = [np.array(r) for r in mesh.cell_region.values()]
     markers = [np.array(m) for m in mesh.facet_marker.values()]
@@ -67,6 +71,20 @@ def to_meshio(mesh: Mesh) -> meshio.Mesh:
     return meshio.Mesh(
         np.array(mesh.points),
         [(kind, np.array(rows)) for kind, rows in blocks],
+        cell_data={"region": region, "marker": marker},
+        cell_sets=_cell_sets(mesh, region, marker),
+    )
+
+
+def _skin(mesh: Mesh) -> meshio.Mesh:
+    """The facets of a surface, each with its marker and the region behind."""
+    import meshio
+
+    region = [np.array(sides[:, 0]) for sides in mesh.facet_region.values()]
+    marker = [np.array(markers) for markers in mesh.facet_marker.values()]
+    return meshio.Mesh(
+        np.array(mesh.points),
+        [(kind, np.array(rows)) for kind, rows in mesh.facets.items()],
         cell_data={"region": region, "marker": marker},
         cell_sets=_cell_sets(mesh, region, marker),
     )
@@ -118,8 +136,9 @@ def _cell_sets(
         for block, values in enumerate(numbers):
             for name, found in members(values, names).items():
                 empty = [np.zeros(0, np.int64)] * len(numbers)
-                # No block has both a region and a marker, so nothing is overwritten.
-                sets.setdefault(name, empty)[block] = found
+                # Only on surfaces does a block have both a region and a marker.
+                known = sets.setdefault(name, empty)
+                known[block] = np.union1d(known[block], found)
     return sets
 
 

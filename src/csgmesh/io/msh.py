@@ -9,6 +9,9 @@ dimension.
 Points keep their order, for which they are all listed under the first surface; Gmsh itself does not
 mind, and readers that take them as they come get the numbering of the mesh.
 
+Of the mesh of a surface in space its facets are written; regions are volumes without elements,
+which know their bounding surfaces.
+
 Periodic pairs go to the section $Periodic, the second side as the slave of the first. Read back,
 they are called by the first names of the entities.
 
@@ -27,11 +30,13 @@ import numpy as np
 from csgmesh.errors import FileFormatError
 from csgmesh.io.assemble import INNER, OUTER, Listing
 from csgmesh.io.assemble_space import dimension
+from csgmesh.io.assemble_surface import lists_surface
 from csgmesh.io.msh_parse import FROM_GMSH, GMSH_TYPE, Entity, MshContent, is_version_4_1, parse
 from csgmesh.io.msh_periodic import links, pairs
 from csgmesh.mesh import KINDS, Mesh
 from csgmesh.mesh.lagrange import EQUISPACED
 from csgmesh.mesh.nodes import with_nodes
+from csgmesh.mesh.surfaces import is_surface, with_facets
 
 _INT, _SIZE, _DOUBLE = "<i4", "<u8", "<f8"
 
@@ -41,6 +46,8 @@ Field = tuple[str, "np.ndarray | Sequence[float]"]
 def write(path: Path, mesh: Mesh, *, binary: bool = True) -> None:
     """Write a ``.msh`` file of version 4.1; text with ``binary=False``."""
     mesh = with_nodes(mesh, EQUISPACED)
+    if is_surface(mesh):
+        mesh = replace(with_facets(mesh), cells={}, cell_region={})
     groups = _Groups(mesh)
     with open(path, "wb") as file:
         sink: _Binary | _Text = _Binary(file) if binary else _Text(file)
@@ -72,14 +79,17 @@ def read(path: Path) -> Mesh:
         return read_foreign(path)
     found = parse(path, data)
     listing = Listing(path, found.points)
-    most = dimension([block.kind for block in found.elements])
+    kinds = [block.kind for block in found.elements]
+    is_skin = lists_surface(kinds, found.points)
+    most = 3 if is_skin else dimension(kinds)
     for dim, tag in sorted(found.names):
         if dim == most:
             listing.regions.of(found.names[dim, tag])
     for dim, entity in sorted(found.physical, key=lambda key: (-key[0], key[1])):
         if dim < most:
             listing.markers.of(_boundary(found, dim, entity))
-    rows_of: dict[str, list[tuple[np.ndarray, np.ndarray, np.ndarray]]] = {}
+    beside = _beside(found, listing) if is_skin else {}
+    rows_of: dict[str, list[tuple[np.ndarray, ...]]] = {}
     for block in found.elements:
         if block.kind not in KINDS or KINDS[block.kind].dim != block.dim:
             raise FileFormatError(f"{path}: {block.kind} elements in an entity of dim {block.dim}")
@@ -90,11 +100,14 @@ def read(path: Path) -> Mesh:
         else:
             number = listing.markers.of(_boundary(found, block.dim, block.entity))
         numbers = np.full(len(block.rows), number)
-        rows_of.setdefault(block.kind, []).append((block.tags, block.rows, numbers))
+        sides = np.tile(beside.get(block.entity, [-1, -1]), (len(block.rows), 1))
+        rows_of.setdefault(block.kind, []).append((block.tags, block.rows, numbers, sides))
     for kind, parts in rows_of.items():
         order = np.argsort(np.concatenate([p[0] for p in parts]), kind="stable")
         rows = np.concatenate([p[1] for p in parts])[order]
         listing.add(kind, rows, np.concatenate([p[2] for p in parts])[order])
+        if is_skin:
+            listing.beside[kind] = [np.concatenate([p[3] for p in parts])[order]]
     mesh = listing.mesh()
     named = [
         (link, (_side(found, link.dim, link.master), _side(found, link.dim, link.entity)))
@@ -102,6 +115,19 @@ def read(path: Path) -> Mesh:
         if link.dim == 1
     ]
     return replace(mesh, periodic=pairs(mesh, named, listing.number)) if named else mesh
+
+
+def _beside(found: MshContent, listing: Listing) -> dict[int, list[int]]:
+    """Regions behind and in front of the surface entities that volumes list."""
+    out: dict[int, list[int]] = {}
+    for dim, entity in sorted(found.bounding):
+        if dim == 3:
+            tags = found.physical.get((3, entity), ())
+            names = [found.names.get((3, tag), f"region{tag}") for tag in tags[:1]]
+            number = listing.regions.of(names[0] if names else f"region{entity}")
+            for surface in found.bounding[dim, entity]:
+                out.setdefault(abs(surface), [-1, -1])[surface < 0] = number
+    return out
 
 
 def _side(found: MshContent, dim: int, entity: int) -> str:
@@ -136,9 +162,8 @@ class _Groups:
         self.points = np.flatnonzero(mesh.point_marker >= 0)
         markers = mesh.point_marker[self.points].tolist()
         self.point_groups = [self._all(0, mesh.boundary_names[m]) for m in markers]
-        self.regions = sorted(
-            {int(r) for region in mesh.cell_region.values() for r in np.unique(region)}
-        )
+        numbers = [*mesh.cell_region.values()] or [*mesh.facet_region.values()]
+        self.regions = sorted({int(r) for n in numbers for r in np.unique(n) if r >= 0})
 
     def _group(self, dim: int, name: str) -> int:
         return self.physical.setdefault((dim, name), len(self.physical) + 1)
@@ -232,6 +257,9 @@ def _write_entities(sink: _Binary | _Text, groups: _Groups) -> None:
     around = groups.bounding()
     for region in groups.regions:
         rows = [c[mesh.cell_region[k] == region].ravel() for k, c in mesh.cells.items()]
+        if not rows:
+            sides = mesh.facet_region.items()
+            rows = [mesh.facets[k][(r == region).any(axis=1)].ravel() for k, r in sides]
         physical = (groups.physical_region(region),)
         _write_entity(sink, region + 1, xyz[np.concatenate(rows)], physical, around[region])
     sink.end()
@@ -260,7 +288,8 @@ def _write_nodes(sink: _Binary | _Text, mesh: Mesh, groups: _Groups) -> None:
         sink.line((_SIZE, [0, 0, 0, 0]))
     else:
         sink.line((_SIZE, [1, n, 1, n]))
-        sink.line((_INT, [groups.dim, groups.regions[0] + 1, 0]), (_SIZE, [n]))
+        entity = [groups.dim, groups.regions[0] + 1] if mesh.cells else [groups.dim - 1, 1]
+        sink.line((_INT, [*entity, 0]), (_SIZE, [n]))
         sink.table(_SIZE, np.arange(1, n + 1))
         sink.table(_DOUBLE, _in_space(mesh.points))
     sink.end()

@@ -62,6 +62,7 @@ class MshContent:
     point_tags: np.ndarray = field(default_factory=lambda: np.zeros(0, np.int64))
     names: dict[tuple[int, int], str] = field(default_factory=dict)
     physical: dict[tuple[int, int], tuple[int, ...]] = field(default_factory=dict)
+    bounding: dict[tuple[int, int], list[int]] = field(default_factory=dict)
     elements: list[Entity] = field(default_factory=list)
     links: list[Link] = field(default_factory=list)
 
@@ -107,7 +108,7 @@ def _entities(reader: _Reader, content: MshContent) -> None:
             tags = tuple(abs(t) for t in reader.ints(reader.sizes(1)[0]))
             content.physical[dim, tag] = tags
             if dim:
-                reader.ints(reader.sizes(1)[0])
+                content.bounding[dim, tag] = reader.ints(reader.sizes(1)[0])
 
 
 def _nodes(reader: _Reader, content: MshContent) -> None:

@@ -6,6 +6,9 @@ Names are arrays in the field data: ``region:rock`` holds the number of a region
 ``boundary:plate.left`` the markers of all facets of that name. (String arrays would be prettier in
 ParaView, but meshio refuses files that contain them.)
 
+The triangles of a surface in space are written once, with `region` behind them, `marker`, and
+`ahead`, the region in front.
+
 Source: VTK File Formats, https://docs.vtk.org/en/latest/design_documents/VTKFileFormats.html
 """
 
@@ -24,11 +27,13 @@ from numpy.typing import ArrayLike
 from csgmesh.errors import FileFormatError, InputError
 from csgmesh.io.assemble import Listing
 from csgmesh.io.assemble_space import dimension
+from csgmesh.io.assemble_surface import lists_surface
 from csgmesh.io.vtk_kinds import VTK_TYPE, kind_of, vtk_order
 from csgmesh.io.vtu_parse import Grid, VtuFile
 from csgmesh.mesh import KINDS, Mesh
 from csgmesh.mesh.lagrange import EQUISPACED
 from csgmesh.mesh.nodes import with_nodes
+from csgmesh.mesh.surfaces import is_surface, with_facets
 from csgmesh.options import check_choice
 
 _TYPE_NAME = {"f8": "Float64", "f4": "Float32", "i8": "Int64", "i4": "Int32", "u1": "UInt8"}
@@ -72,6 +77,7 @@ def write(
         '</PointData>\n<CellData Scalars="region">',
         appended.add("region", grid.regions()),
         appended.add("marker", grid.markers()),
+        *([appended.add("ahead", grid.ahead())] if grid.is_surface else []),
         *(
             appended.add(k, grid.padded(v))
             for k, v in _values(cell_data, mesh.n_cells, "cell_data")
@@ -97,7 +103,9 @@ def read(path: Path) -> Mesh:
     grid = file.grid()
     listing = Listing(path, grid.points)
     region_of, marker_of = listing.names_in(file.field_data())
-    dim = dimension([kind_of(t, 0) or "" for t in np.unique(grid.types).tolist()])
+    kinds = [kind_of(t, 0) or "" for t in np.unique(grid.types).tolist()]
+    is_skin = lists_surface(kinds, grid.points)
+    dim = 3 if is_skin else dimension(kinds)
     starts = np.concatenate([[0], grid.offsets[:-1]]) if len(grid.offsets) else grid.offsets
     widths = grid.offsets - starts
     for number, width in dict.fromkeys(zip(grid.types.tolist(), widths.tolist(), strict=True)):
@@ -116,6 +124,12 @@ def read(path: Path) -> Mesh:
         else:
             tags = _numbers(grid, "marker", which, marker_of, listing.marker_number)
         listing.add(kind, rows, tags)
+        if is_skin:
+            sides = [
+                _numbers(grid, name, which, region_of, listing.region_number)
+                for name in ("region", "ahead")
+            ]
+            listing.beside.setdefault(kind, []).append(np.column_stack(sides))
     return listing.mesh()
 
 
@@ -124,8 +138,11 @@ class _Grid:
 
     def __init__(self, mesh: Mesh) -> None:
         vertices = np.flatnonzero(mesh.point_marker >= 0)
-        self.mesh = mesh
-        self.blocks = [*mesh.cells.items(), *mesh.facets.items()]
+        self.is_surface = is_surface(mesh)
+        self.mesh = mesh = with_facets(mesh) if self.is_surface else mesh
+        self.blocks = [*mesh.facets.items()]
+        if not self.is_surface:
+            self.blocks = [*mesh.cells.items(), *self.blocks]
         self.extra = list(mesh.facet_marker.values())
         if len(vertices):
             self.blocks.append(("vertex", vertices[:, None]))
@@ -134,12 +151,25 @@ class _Grid:
 
     def regions(self) -> np.ndarray:
         out = np.full(self.n, -1, np.int32)
-        out[: self.mesh.n_cells] = np.concatenate([*self.mesh.cell_region.values(), []])
+        if self.is_surface:
+            out[: self.mesh.n_facets] = self._beside(0)
+        else:
+            out[: self.mesh.n_cells] = np.concatenate([*self.mesh.cell_region.values(), []])
         return out
+
+    def ahead(self) -> np.ndarray:
+        """Regions in front of the facets of a surface."""
+        out = np.full(self.n, -1, np.int32)
+        out[: self.mesh.n_facets] = self._beside(1)
+        return out
+
+    def _beside(self, side: int) -> np.ndarray:
+        return np.concatenate([sides[:, side] for sides in self.mesh.facet_region.values()])
 
     def markers(self) -> np.ndarray:
         out = np.full(self.n, -1, np.int32)
-        out[self.mesh.n_cells :] = np.concatenate([*self.extra, []])
+        first = 0 if self.is_surface else self.mesh.n_cells
+        out[first:] = np.concatenate([*self.extra, []])
         return out
 
     def padded(self, values: np.ndarray) -> np.ndarray:
@@ -233,7 +263,7 @@ def _values(
             raise InputError(
                 f"{what}[{name!r}] must have shape ({n},) or ({n}, k); got {values.shape}"
             )
-        if name in ("region", "marker"):
+        if name in ("region", "marker", "ahead"):
             raise InputError(f"{what}: {name!r} is the name of an array that csgmesh writes")
         found.append((name, values.astype(np.float64 if values.dtype.kind == "f" else np.int64)))
     return found

@@ -99,7 +99,7 @@ class VtuFile:
             raise self.error("has cell offsets that decrease")
         connectivity = self._needed(piece, "Cells/DataArray[@Name='connectivity']", last)
         data = {}
-        for name in ("region", "marker"):
+        for name in ("region", "marker", "ahead"):
             if piece.find(f"CellData/DataArray[@Name='{name}']") is not None:
                 data[name] = self._needed(piece, f"CellData/DataArray[@Name='{name}']", n_cells)
         return Grid(

@@ -14,11 +14,12 @@ from csgmesh.measures.space.quality import space_quality
 from csgmesh.measures.summary import extremes, headline, histogram, table
 from csgmesh.mesh import KINDS, Mesh
 from csgmesh.mesh.nodes import node_family
+from csgmesh.mesh.surfaces import is_surface
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Quality:
-    """Measures of each cell of a plane mesh, and their extremes.
+    """Measures of each cell of a mesh of the plane or of a surface, and their extremes.
 
     Arrays have an entry a cell, counted through all kinds in the order of ``mesh.cells``. Angles
     and edges of curved cells are measured by their corners. A printed Quality is a table with a
@@ -106,7 +107,7 @@ def quality(mesh: Mesh) -> Any:
     Parameters
     ----------
     mesh : Mesh
-        Of the plane, or of space.
+        Of the plane, of space, or of a surface in it, whose cells are measured by their corners.
 
     Returns
     -------
@@ -138,12 +139,16 @@ def quality(mesh: Mesh) -> Any:
     """
     if not isinstance(mesh, Mesh):
         raise InputError(f"quality needs a Mesh, as generate returns; got {type(mesh).__name__}")
-    if mesh.dim == 3:
+    if mesh.dim == 3 and not is_surface(mesh):
         return space_quality(mesh)
     parts = []
     for kind, rows in mesh.cells.items():
-        measures = measure_cells(mesh.points, rows[:, : KINDS[kind].n_corners])
-        if KINDS[kind].order > 1:
+        corners = rows[:, : KINDS[kind].n_corners]
+        points = mesh.points
+        if mesh.dim == 3:
+            points, corners = _laid_flat(points[corners])
+        measures = measure_cells(points, corners)
+        if mesh.dim == 2 and KINDS[kind].order > 1:
             measures = _of_curved(mesh, kind, measures)
         parts.append(measures)
     joined = {
@@ -152,6 +157,22 @@ def quality(mesh: Mesh) -> Any:
     }
     counts = {kind: len(rows) for kind, rows in mesh.cells.items()}
     return Quality(**joined, n_points=mesh.n_points, n_cells=mesh.n_cells, n_by_kind=counts)
+
+
+def _laid_flat(corners: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Cells (m, 3 or 4, 3), each in a plane of its own: points (k, 2) and rows of numbers.
+
+    The plane of a warped quad is parallel to both diagonals.
+    """
+    m, k, _ = corners.shape
+    away = corners - corners[:, :1]
+    first = away[:, k - 2]
+    normal = np.cross(first, corners[:, -1] - corners[:, k - 3])
+    first, normal = (
+        v / np.maximum(np.sqrt((v * v).sum(1)), 1e-300)[:, None] for v in (first, normal)
+    )
+    axes = np.stack([first, np.cross(normal, first)], axis=2)
+    return (away @ axes).reshape(-1, 2), np.arange(m * k).reshape(m, k)
 
 
 def _of_curved(mesh: Mesh, kind: str, straight: CellMeasures) -> CellMeasures:

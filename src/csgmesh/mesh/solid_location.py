@@ -19,6 +19,7 @@ from csgmesh import kernels
 from csgmesh.mesh.kinds import KINDS
 from csgmesh.mesh.locate import checked_values, query_points
 from csgmesh.mesh.shape_functions import weights_in_cells, weights_in_tetrahedra
+from csgmesh.mesh.surfaces import require_solid_cells
 
 #: Points are looked up in batches of this many.
 _BATCH = 20_000
@@ -67,6 +68,7 @@ class SolidLocator:
     @staticmethod
     def of(points: np.ndarray, cells: Mapping[str, np.ndarray]) -> SolidLocator:
         """Build the structure."""
+        require_solid_cells(cells, "locate")
         tetrahedra, owner = tetrahedra_of(cells)
         finite = np.isfinite(points).all(axis=1)[tetrahedra].all(axis=1)
         tetrahedra, owner = tetrahedra[finite], owner[finite]

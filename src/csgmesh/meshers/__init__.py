@@ -8,6 +8,7 @@ from csgmesh.meshers.per_region import PerRegion
 from csgmesh.meshers.quad_pairing import QuadPairing
 from csgmesh.meshers.quadtree import Quadtree
 from csgmesh.meshers.structured import Structured
+from csgmesh.meshers.surface.mesher import SurfaceRefinement
 from csgmesh.meshers.sweep import Sweep
 from csgmesh.meshers.worst import worst_cells
 
@@ -20,6 +21,7 @@ __all__ = [
     "QuadPairing",
     "Quadtree",
     "Structured",
+    "SurfaceRefinement",
     "Sweep",
     "worst_cells",
 ]

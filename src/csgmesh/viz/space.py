@@ -11,6 +11,7 @@ from csgmesh.domain.plc import Plc
 from csgmesh.errors import InputError
 from csgmesh.mesh import KINDS, Mesh
 from csgmesh.mesh.faces import canonical_faces, faces_of
+from csgmesh.mesh.surfaces import is_surface, with_facets
 from csgmesh.viz.palette import EDGE, UNNAMED, boundary_color, region_color
 
 if TYPE_CHECKING:
@@ -30,6 +31,7 @@ _PIECES = 60
 _MOST_PIECES = 200_000
 #: Faces more than these are drawn without their edges.
 _MANY = 40_000
+_NONE = np.zeros(0, np.int64)
 
 
 @dataclass(frozen=True, eq=False)
@@ -116,7 +118,36 @@ def _towards(plc: Plc, view: tuple[float, float]) -> np.ndarray:
     return edges[np.isin(edges[:, 0] * n + edges[:, 1], sides[:, 0] * n + sides[:, 1])]
 
 
+def _of_surface(mesh: Mesh, options: Options) -> Polygons:
+    """The facets of a surface, with their inner sides where a cut shows them."""
+    counts = ", ".join(f"{len(c):,} {kind}" for kind, c in mesh.cells.items())
+    mesh = with_facets(mesh)
+    corners, markers, regions = [np.zeros((0, 4, 3))], [_NONE], [_NONE]
+    for kind, rows in mesh.facets.items():
+        kept = _behind(mesh, rows, options.cut)
+        last = KINDS[kind].n_corners - 1
+        corners.append(mesh.points[rows[kept][:, [0, 1, 2, last]]])
+        markers.append(mesh.facet_marker[kind][kept])
+        regions.append(mesh.facet_region[kind][kept, 0])
+    shape, marker, region = (np.concatenate(part) for part in (corners, markers, regions))
+    if options.cut is not None:
+        shape = np.concatenate([shape, _inner_sides(shape)])
+        marker, region = np.tile(marker, 2), np.tile(region, 2)
+    lines = np.zeros((0, 2, 3))
+    return Polygons(shape, marker, region, mesh.boundary_names, lines, 0.0, counts)
+
+
+def _inner_sides(corners: np.ndarray) -> np.ndarray:
+    """Polygons (n, 4, 3) seen from the other side; of triangles the last corner comes twice."""
+    out = corners[:, [0, 3, 2, 1]]
+    triangle = (corners[:, 2] == corners[:, 3]).all(axis=1)
+    out[triangle] = corners[triangle][:, [0, 2, 1, 1]]
+    return out
+
+
 def _of_mesh(mesh: Mesh, options: Options) -> Polygons:
+    if is_surface(mesh):
+        return _of_surface(mesh, options)
     kept = {kind: _behind(mesh, rows, options.cut) for kind, rows in mesh.cells.items()}
     cells = {kind: mesh.cells[kind][at, : KINDS[kind].n_corners] for kind, at in kept.items()}
     region = np.concatenate([mesh.cell_region[kind][at] for kind, at in kept.items()])

@@ -14,6 +14,7 @@ from csgmesh.improve.refinement.marks import marked_cells
 from csgmesh.improve.refinement.solid_templates import CELLS, FACETS
 from csgmesh.improve.refinement.solids import refine_solid
 from csgmesh.mesh import Mesh
+from csgmesh.mesh.surfaces import require_solid_cells
 from csgmesh.options import check_choice
 
 METHODS = ("red-green", "longest edge", "newest vertex")
@@ -113,6 +114,7 @@ def refine(mesh: Mesh, cells: Any = None, method: str = "red-green") -> Mesh:
     """
     check_choice("method", method, METHODS, "refine")
     if mesh.dim == 3:
+        require_solid_cells(mesh.cells, "refine")
         _check_solid(mesh, cells, method)
         if method == METHODS[0]:
             return refine_solid(mesh)
