@@ -38,7 +38,13 @@ _EVEN = 1e-9
 
 
 def stations(
-    flat: Mesh, sweep: SweptDomain, domain: Plc, size: Any, layers: int | None, max_points: int
+    flat: Mesh,
+    sweep: SweptDomain,
+    domain: Plc,
+    size: Any,
+    layers: int | None,
+    max_points: int,
+    multiple: int = 1,
 ) -> np.ndarray:
     """Places that the layers end at.
 
@@ -58,6 +64,8 @@ def stations(
         How many; None: by the size.
     max_points : int
         Most points of all layers.
+    multiple : int
+        What the number of layers is to be a multiple of, where the size says it.
 
     Returns
     -------
@@ -78,7 +86,7 @@ def stations(
     if n is None:
         wanted = sweep.amount / step[0] if even else np.ceil(passed[-1] * (1.0 - _EVEN))
         fewest = np.ceil(_FEWEST_AROUND * sweep.amount / 360.0) if sweep.is_turned else 1
-        n = int(max(round(float(wanted)), fewest))
+        n = -(-int(max(round(float(wanted)), fewest)) // multiple) * multiple
     if (n + 1) * flat.n_points > max_points:
         raise BudgetError(
             f"{n} layers of {flat.n_points} points each would have {(n + 1) * flat.n_points} "

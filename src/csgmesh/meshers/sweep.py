@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 
@@ -13,12 +13,13 @@ from csgmesh.domain.plc import Plc
 from csgmesh.domain.sweep import SweptDomain
 from csgmesh.errors import InputError, MeshingError
 from csgmesh.mesh import Mesh
+from csgmesh.meshers.axis_core import AxisCore, axis_core
 from csgmesh.meshers.delaunay_refinement import DelaunayRefinement
 from csgmesh.meshers.per_region.mesher import Mesher
 from csgmesh.meshers.stations import source_of_place, stations
 from csgmesh.meshers.swept_cells import swept_cells, swept_facets
 from csgmesh.meshers.workspace import Progress
-from csgmesh.options import check_whole
+from csgmesh.options import check_choice, check_whole
 
 
 @dataclass(frozen=True)
@@ -39,6 +40,9 @@ class Sweep:
         where it varies along the sweep or an end has one of its own.
     max_points : int, default 10**7
         Most points, of the profile and of the mesh.
+    axis : {"wedges", "o-grid"}, default "wedges"
+        What quads with a side on the axis of a full turn become: a wedge a layer, or together an
+        O-grid of hexahedra, of a number of layers that is a multiple of four.
 
     Raises
     ------
@@ -58,6 +62,9 @@ class Sweep:
     across the profile, the smallest along counts across, and the smallest across counts along. A
     size of an end makes layers thin near it, a size of a side the profile's edges short; fields
     that are tied to names, such as `NearSize`, take those of the profile.
+
+    An O-grid is refused with the place where a cell of the profile meets the axis other than as a
+    quad with a side on it. It is one cell of the profile wide, so its cells are small.
 
     Termination
     -----------
@@ -82,6 +89,7 @@ class Sweep:
     mesher: Mesher | None = None
     layers: int | None = None
     max_points: int = 10**7
+    axis: Literal["wedges", "o-grid"] = "wedges"
 
     dim = 3
 
@@ -101,6 +109,9 @@ class Sweep:
         if layers is not None and layers < 1:
             raise InputError(f"layers must be at least 1; got {layers!r}")
         check_whole("max_points", self.max_points, 16)
+        check_choice("axis", self.axis, ("wedges", "o-grid"), "Sweep")
+        if self.axis == "o-grid" and layers is not None and layers % 4:
+            raise InputError(f"layers must be a multiple of 4 around an O-grid; got {layers}")
 
     def generate(self, domain: Plc, size: Any = None, progress: Progress | None = None) -> Mesh:
         """Mesh a solid.
@@ -136,9 +147,15 @@ class Sweep:
             )
         mesher = self._profile_mesher()
         flat = mesher.generate(sweep.profile, planar_size(size, sweep, domain), progress)
-        at = stations(flat, sweep, domain, size, self.layers, self.max_points)
+        has_core = self.axis == "o-grid" and bool(_on_axis(flat, sweep).any())
+        if has_core and not sweep.is_closed:
+            raise MeshingError(
+                f"an O-grid at the axis needs a full turn; this one is of {sweep.amount:g} degrees"
+            )
+        multiple = 4 if has_core else 1
+        at = stations(flat, sweep, domain, size, self.layers, self.max_points, multiple)
         info = {"method": "Sweep", "profile": type(mesher).__name__, "layers": len(at) - 1}
-        return swept_mesh(flat, sweep, domain, at, info)
+        return swept_mesh(flat, sweep, domain, at, info, has_core=has_core)
 
     def _profile_mesher(self) -> Any:
         mesher: Any = self.mesher or DelaunayRefinement()
@@ -191,17 +208,27 @@ class _AlongTheSweep:
         return np.min(values, axis=0) / self.stretch
 
 
+def _on_axis(flat: Mesh, sweep: SweptDomain) -> np.ndarray:
+    """Which points of the profile stay where they are."""
+    if not sweep.is_turned:
+        return np.zeros(flat.n_points, bool)
+    return np.asarray(np.abs(flat.points[:, 0]) <= sweep.profile.snap)
+
+
 def swept_mesh(
-    flat: Mesh, sweep: SweptDomain, domain: Plc, at: np.ndarray, info: dict[str, object]
+    flat: Mesh,
+    sweep: SweptDomain,
+    domain: Plc,
+    at: np.ndarray,
+    info: dict[str, object],
+    *,
+    has_core: bool = False,
 ) -> Mesh:
     """The planar mesh in layers between stations of the sweep."""
     n_layers = len(at) - 1
-    snap = sweep.profile.snap
-    on_axis = np.zeros(flat.n_points, bool)
+    on_axis = _on_axis(flat, sweep)
     place = flat.points.copy()
-    if sweep.is_turned:
-        on_axis = np.abs(place[:, 0]) <= snap
-        place[on_axis, 0] = 0.0
+    place[on_axis, 0] = 0.0
     n_stations = n_layers + (not sweep.is_closed)
     n = flat.n_points
     number = np.arange(n_stations * n).reshape(n_stations, n)
@@ -210,8 +237,16 @@ def swept_mesh(
     after = number[np.arange(1, n_layers + 1) % n_stations]
     # Counterclockwise in (r, z) is clockwise seen along the turn, and mirroring turns again.
     flips = sweep.is_turned != bool(np.linalg.det(sweep.matrix) < 0.0)
-    cells, region = swept_cells(flat, number[:n_layers], after, on_axis, flips)
-    facets, marker, names = _facets(flat, domain, number, after, on_axis, flips)
+    flat_cells, flat_region, core = dict(flat.cells), dict(flat.cell_region), None
+    if has_core:
+        core = axis_core(flat, sweep, at, number, on_axis)
+        flat_cells["quad"] = flat_cells["quad"][~core.column]
+        flat_region["quad"] = flat_region["quad"][~core.column]
+        points = np.concatenate([points, core.points])
+    cells, region = swept_cells(flat_cells, flat_region, number[:n_layers], after, on_axis, flips)
+    if core is not None:
+        cells, region = _joined(cells, core.hexahedra), _joined(region, core.region)
+    facets, marker, names = _facets(flat, domain, number, after, on_axis, flips, core)
     used, renumbered = _compact(cells, facets)
     kinds = list(facets)
     return Mesh(
@@ -228,6 +263,13 @@ def swept_mesh(
     )
 
 
+def _joined(table: dict[str, np.ndarray], more: np.ndarray) -> dict[str, np.ndarray]:
+    """A table of cells with more hexahedra, which stay first."""
+    have = table.get("hexahedron", more[:0])
+    rest = {kind: rows for kind, rows in table.items() if kind != "hexahedron"}
+    return {"hexahedron": np.concatenate([have, more]), **rest}
+
+
 def _facets(
     flat: Mesh,
     domain: Plc,
@@ -235,6 +277,7 @@ def _facets(
     after: np.ndarray,
     on_axis: np.ndarray,
     flips: bool,
+    core: AxisCore | None,
 ) -> tuple[dict[str, np.ndarray], dict[str, np.ndarray], tuple[tuple[str, ...], ...]]:
     sweep = domain.sweep
     assert sweep is not None
@@ -243,7 +286,7 @@ def _facets(
     entry = [
         tuple(sweep.side[n] for n in names if n in sweep.side) for names in flat.boundary_names
     ]
-    kept = outer & ~on_axis[lines].all(axis=1)
+    kept = outer & (on_axis[lines].sum(axis=1) <= (1 if core is None else 0))
     own = [entry[m] for m in flat.facet_marker["line"][kept].tolist()]
     n_layers = len(after)
     pieces = swept_facets(lines[kept], number[:n_layers], after, on_axis, flips)
@@ -252,6 +295,10 @@ def _facets(
     for kind, rows, source in pieces:
         found.setdefault(kind, []).append(rows)
         labels.setdefault(kind, []).extend(own[k] for k in source.tolist())
+    if core is not None:
+        found.setdefault("quad", []).append(core.facets)
+        ends = flat.facet_marker["line"][core.facet_line]
+        labels.setdefault("quad", []).extend(entry[m] for m in ends.tolist())
     if not sweep.is_closed:
         for name, station, turned in ((sweep.start, 0, not flips), (sweep.end, -1, flips)):
             for kind, rows in flat.cells.items():

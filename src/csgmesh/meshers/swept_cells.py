@@ -2,21 +2,27 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import numpy as np
 
 from csgmesh.errors import MeshingError
-from csgmesh.mesh import Mesh
 
 
 def swept_cells(
-    flat: Mesh, here: np.ndarray, after: np.ndarray, on_axis: np.ndarray, flips: bool
+    flat_cells: Mapping[str, np.ndarray],
+    flat_region: Mapping[str, np.ndarray],
+    here: np.ndarray,
+    after: np.ndarray,
+    on_axis: np.ndarray,
+    flips: bool,
 ) -> tuple[dict[str, np.ndarray], dict[str, np.ndarray]]:
     """Cells of all layers by kind, and their regions.
 
     Parameters
     ----------
-    flat : Mesh
-        Of triangles, quads or both.
+    flat_cells, flat_region : mapping of str to array
+        Triangles, quads or both, and their regions.
     here, after : (n_layers, n_points) int64
         Numbers of the planar points at the beginning and the end of each layer.
     on_axis : (n_points,) bool
@@ -26,12 +32,12 @@ def swept_cells(
     """
     found: dict[str, list[np.ndarray]] = {}
     region: dict[str, list[np.ndarray]] = {}
-    for kind, rows in flat.cells.items():
+    for kind, rows in flat_cells.items():
         if kind not in ("triangle", "quad"):
             raise MeshingError(f"Sweep takes profiles of triangles and quads; got {kind}")
         if flips:
             rows = rows[:, ::-1]
-        rows = _axis_first(rows, on_axis)
+        rows = axis_first(rows, on_axis)
         n_axis = on_axis[rows].sum(axis=1)
         for k in np.unique(n_axis).tolist():
             own = np.flatnonzero(n_axis == k)
@@ -39,7 +45,7 @@ def swept_cells(
                 floor = here[:, corners[0]], after[:, corners[0]]
                 table = np.stack([floor[s][..., j] for s, j in corners[1]], axis=-1)
                 found.setdefault(made, []).append(table.reshape(-1, len(corners[1])))
-                region.setdefault(made, []).append(np.tile(flat.cell_region[kind][own], len(here)))
+                region.setdefault(made, []).append(np.tile(flat_region[kind][own], len(here)))
     kinds = [k for k in ("hexahedron", "wedge", "pyramid", "tetra") if k in found]
     return (
         {k: np.concatenate(found[k]) for k in kinds},
@@ -47,7 +53,7 @@ def swept_cells(
     )
 
 
-def _axis_first(rows: np.ndarray, on_axis: np.ndarray) -> np.ndarray:
+def axis_first(rows: np.ndarray, on_axis: np.ndarray) -> np.ndarray:
     """Cells turned so that those of their corners that lie on the axis come first."""
     k = rows.shape[1]
     at = on_axis[rows]
