@@ -75,6 +75,18 @@ def test_pulley(run):
     np.testing.assert_allclose(np.hypot(radius - 3, seat[:, 2] - 0.5), 0.4, atol=1e-12)
 
 
+def test_block(run):
+    printed, folder = run("block")
+    least = float(re.search(r"smallest dihedral angle ([\d.]+)", printed).group(1))
+    assert least >= 15.0
+    assert float(re.search(r"smallest scaled Jacobian ([\d.]+)", printed).group(1)) >= 0.2
+    check_picture(folder / "block.png")
+    check_picture(folder / "block_hexahedra.png")
+    mesh = cm.read(folder / "block.msh")
+    cavity = mesh.points[mesh.boundary_points("cavity")] - (0.6, 0.5, 0.5)
+    np.testing.assert_allclose(np.linalg.norm(cavity, axis=1), 0.3, atol=1e-12)
+
+
 def test_bracket(run):
     printed, folder = run("bracket")
     assert "the mesh is valid" in printed
