@@ -217,3 +217,18 @@ def test_the_same_bytes_every_time() -> None:
     assert first.points.tobytes() == second.points.tobytes()
     assert first.facets.tobytes() == second.facets.tobytes()
     assert first.boundary_names == second.boundary_names
+
+
+@pytest.mark.parametrize("turn", [0.0, 37.0])
+def test_both_ends_of_one_arc_revolved(turn: float) -> None:
+    # The disk's arc is met above and below; what lies between on the far side of the axis is none.
+    lens = cm.Disk((0, 0), 2, name="rim").rotate(turn) & cm.Box((0, -5), (1, 5), name="cut")
+    plc = cm.evaluate(cm.Revolve(lens), deviation=1e-4)
+    exact = 4.0 / 3.0 * np.pi * (8.0 - 3.0**1.5)
+    assert plc.volumes()[0] == pytest.approx(exact, rel=1e-3)
+    radius = np.hypot(*plc.points[:, :2].T)
+    assert radius.max() == pytest.approx(1.0, abs=1e-12)
+    on_rim = plc.points[
+        np.unique(plc.facets[plc.facet_marker == plc.names.index("revolve.side.rim")])
+    ]
+    np.testing.assert_allclose(np.linalg.norm(on_rim, axis=1), 2.0, atol=1e-12)

@@ -11,7 +11,7 @@ from csgmesh.boundary.rings import rings
 from csgmesh.csg.primitives.half_space import HalfSpace
 from csgmesh.csg.shape import Shape
 from csgmesh.csg.solid import Faceted, Prism, Profile, Revolution
-from csgmesh.domain.curves import LINE, Curves
+from csgmesh.domain.curves import ARC, LINE, Curves
 from csgmesh.domain.surfaces import EXTRUDED, REVOLVED, Surfaces
 
 #: Facets around an axis, at least: enough that a torus is one.
@@ -19,6 +19,9 @@ _FEWEST_AROUND = 12
 
 #: A profile's points this near the axis, as a share of its radius, lie on it.
 _ON_AXIS = 1e-14
+
+#: Angles that differ by less are one, in radians.
+_ALIKE = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
@@ -144,10 +147,35 @@ def _whole_curves(
     interval = curves.interval[first[kept]].copy()
     for k, old in enumerate(kept.tolist()):
         own = curves.interval[row == old]
-        forward = own[0, 1] >= own[0, 0]
-        interval[k] = (own.min(), own.max()) if forward else (own.max(), own.min())
+        low, high = _covering(own, is_arc=curves.kind[first[old]] == ARC)
+        interval[k] = (low, high) if own[0, 1] >= own[0, 0] else (high, low)
     table = Curves(curves.kind[first[kept]], curves.data[first[kept]], interval)
     return number[row], table, tuple((int(part[first[k]]),) for k in kept.tolist())
+
+
+def _covering(intervals: np.ndarray, *, is_arc: bool) -> tuple[float, float]:
+    """The shortest interval of parameters that has all of those given (k, 2) in it.
+
+    Angles are alike a full turn apart: pieces at both ends of an arc's right half must not be
+    joined over the left one, where a surface of revolution has nothing to project to.
+    """
+    low, high = intervals.min(axis=1), intervals.max(axis=1)
+    whole = float(low.min()), float(high.max())
+    if not is_arc:
+        return whole
+    turn = 2.0 * np.pi
+    start = low % turn
+    order = np.argsort(start, kind="stable")
+    start, end = start[order], start[order] + (high - low)[order]
+    reached = np.maximum.accumulate(end)
+    after = np.append(start[1:], start[0] + turn)
+    widest = int(np.argmax(after - reached))
+    if widest == len(start) - 1:
+        found = float(start[0]), float(reached[-1])
+    else:
+        found = float(start[widest + 1]), max(float(reached[widest]) + turn, float(reached[-1]))
+    # Where nothing is gained, parameters stay the ones that the profile has.
+    return found if found[1] - found[0] < whole[1] - whole[0] - _ALIKE else whole
 
 
 def _of_shape(
