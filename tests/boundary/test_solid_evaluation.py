@@ -232,3 +232,13 @@ def test_both_ends_of_one_arc_revolved(turn: float) -> None:
         np.unique(plc.facets[plc.facet_marker == plc.names.index("revolve.side.rim")])
     ]
     np.testing.assert_allclose(np.linalg.norm(on_rim, axis=1), 2.0, atol=1e-12)
+
+
+def test_an_arc_turned_with_its_hollow_side_outwards() -> None:
+    groove = cm.Disk((3, 0.5), 0.4, name="groove")
+    plc = cm.evaluate(cm.Revolve(cm.Box((0.5, 0), (2.8, 1)) - groove), deviation=1e-4)
+    # Pappus: a rectangle of 2.3 by 1 less a circular segment whose centroid is at `middle`.
+    segment = 0.16 * np.arccos(0.5) - 0.2 * np.sqrt(0.12)
+    middle = 3.0 - 2.0 / 3.0 * 0.12**1.5 / segment
+    exact = np.pi * (2.8**2 - 0.5**2) - 2.0 * np.pi * middle * segment
+    assert plc.volumes()[0] == pytest.approx(exact, rel=1e-4)

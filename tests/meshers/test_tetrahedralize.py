@@ -6,12 +6,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from plc_surfaces import surface_of
 
 import csgmesh as cm
 from csgmesh import kernels
 from csgmesh.domain.surface_mesh import SurfaceMesh
 from csgmesh.meshers.tetrahedra import Tetrahedra, tetrahedralize
-from tests.meshers.plc_surfaces import surface_of
 
 NONE = np.zeros((0, 3))
 CUBE = cm.Box((0, 0, 0), (1, 1, 1))

@@ -79,7 +79,9 @@ def _continued(surfaces: Surfaces) -> Surfaces:
     middle = np.arctan2(v, u)
     between = 0.5 * (start[arc] + end[arc])
     middle += 2.0 * np.pi * np.round((between - middle) / (2.0 * np.pi))
+    # An arc that stays off the axis has no such end, wherever it is seen from.
     wide = np.arccos(np.clip(-data[arc, 0] / np.hypot(u, v), -1.0, 1.0))
+    wide[data[arc, 0] >= np.hypot(u, v)] = np.inf
     start[arc] = np.clip(start[arc], middle - wide, middle + wide)
     end[arc] = np.clip(end[arc], middle - wide, middle + wide)
     line = np.flatnonzero(turned & (profile.kind == LINE) & (data[:, 0] != data[:, 2]))
