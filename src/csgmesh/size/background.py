@@ -10,7 +10,7 @@ import numpy as np
 
 from csgmesh.errors import SizeError
 from csgmesh.mesh import KINDS, Mesh
-from csgmesh.size.field import SizeField, Source
+from csgmesh.size.field import SizeField, Source, require_plane
 from csgmesh.size.sources import GradedSources
 
 if TYPE_CHECKING:
@@ -69,6 +69,7 @@ class BackgroundSize(SizeField):
 
     def bind(self, domain: Pslg) -> Source:
         """The interpolated values, which do not depend on the domain."""
+        require_plane(domain, "BackgroundSize")
         if isinstance(self.background, Mesh):
             return on_mesh(self.background, self.values)
         return _OnGrid(self.background, self.values)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from csgmesh.size.field import SizeField, Source, UniformSize, positive
+from csgmesh.size.field import SizeField, Source, UniformSize, positive, require_plane
 from csgmesh.size.near import GRADATION
 from csgmesh.size.pieces import FINER, boundary_pieces, is_bent
 from csgmesh.size.sources import GradedSources
@@ -58,6 +58,7 @@ class CurvatureSize(SizeField):
 
     def bind(self, domain: Pslg) -> Source:
         """The size by distance from curves."""
+        require_plane(domain, "CurvatureSize")
         bent = np.flatnonzero(is_bent(domain))
         if not len(bent):
             return UniformSize(domain.diagonal)

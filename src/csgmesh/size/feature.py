@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from csgmesh.size.field import SizeField, Source, UniformSize, positive
+from csgmesh.size.field import SizeField, Source, UniformSize, positive, require_plane
 from csgmesh.size.gaps import gaps
 from csgmesh.size.near import GRADATION
 from csgmesh.size.sources import GradedSources
@@ -63,6 +63,7 @@ class FeatureSize(SizeField):
 
     def bind(self, domain: Pslg) -> Source:
         """The size by distance from the gaps."""
+        require_plane(domain, "FeatureSize")
         bridges, widths = gaps(domain)
         if not len(bridges):
             return UniformSize(domain.diagonal)

@@ -95,6 +95,21 @@ class UniformSize(SizeField):
         return self
 
 
+def require_plane(domain: Pslg, field: str) -> None:
+    """Refuse to bind a field that only knows curves to a domain in space.
+
+    Raises
+    ------
+    SizeError
+        If the domain lies in space.
+    """
+    if domain.dim != 2:
+        raise SizeError(
+            f"{field} needs a domain in the plane; in space sizes are a number, a mapping of names "
+            "to numbers, or a callable of points (n, 3)"
+        )
+
+
 def positive(value: object, what: str) -> float:
     """A positive finite number as a float.
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from csgmesh.domain.names import find_markers
 from csgmesh.errors import SizeError
-from csgmesh.size.field import SizeField, Source, positive
+from csgmesh.size.field import SizeField, Source, positive, require_plane
 from csgmesh.size.pieces import boundary_pieces
 from csgmesh.size.sources import GradedSources
 
@@ -71,6 +71,7 @@ class NearSize(SizeField):
 
     def bind(self, domain: Pslg) -> Source:
         """The size by distance from the boundaries of these names."""
+        require_plane(domain, "NearSize")
         found = [find_markers(name, domain.boundary_names) for name in self.names]
         markers = np.unique(np.concatenate(found))
         pieces = marked_pieces(domain, markers)

@@ -10,7 +10,7 @@ import numpy as np
 
 from csgmesh.domain.names import find_names
 from csgmesh.errors import SizeError
-from csgmesh.size.field import SizeField, Source, positive
+from csgmesh.size.field import SizeField, Source, positive, require_plane
 from csgmesh.size.near import GRADATION
 from csgmesh.size.pieces import boundary_pieces
 from csgmesh.size.sources import GradedSources
@@ -52,6 +52,8 @@ class RegionSize(SizeField):
 
     def __post_init__(self) -> None:
         given: Any = self.sizes
+        if isinstance(given, str) or not isinstance(given, (Mapping, tuple, list)):
+            raise SizeError(f"RegionSize: sizes must map names of regions to sizes; got {given!r}")
         pairs = tuple(given.items() if isinstance(given, Mapping) else given)
         if not pairs:
             raise SizeError("RegionSize: sizes must name at least one region; got none")
@@ -61,6 +63,7 @@ class RegionSize(SizeField):
 
     def bind(self, domain: Pslg) -> Source:
         """The size by region, and by distance from the regions' boundaries."""
+        require_plane(domain, "RegionSize")
         pieces, values = [], []
         inside = np.full(len(domain.region_names) + 1, np.inf)
         for name, size in dict(self.sizes).items():
