@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
-from mutations import other
+from mutations import delete_point, other
 
 from csgmesh.mesh import KINDS, Mesh
 
@@ -127,22 +127,6 @@ def lose_a_coordinate(rng, mesh):
     points = mesh.points.copy()
     points[rng.integers(mesh.n_points), rng.integers(3)] = rng.choice([np.nan, np.inf])
     return replace(mesh, points=points)
-
-
-def delete_point(rng, mesh):
-    """All later points move up by one; what named the deleted one names the one behind it."""
-    point = int(rng.integers(mesh.n_points - 1))
-
-    def shifted(rows):
-        return rows - (rows > point)
-
-    return replace(
-        mesh,
-        points=np.delete(mesh.points, point, axis=0),
-        cells={k: shifted(v) for k, v in mesh.cells.items()},
-        facets={k: shifted(v) for k, v in mesh.facets.items()},
-        point_marker=np.delete(mesh.point_marker, point),
-    )
 
 
 def duplicate_point(rng, mesh):

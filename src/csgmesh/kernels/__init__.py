@@ -88,7 +88,6 @@ _HOME = {
     "places": "tree.leaves",
     "find_leaves": "tree.leaves",
     "adjoining": "tree.leaves",
-    "split_octants": "tree.octants",
     "mark_unbalanced_octants": "tree.octants",
     "octant_places": "tree.octants",
     "find_octants": "tree.octants",

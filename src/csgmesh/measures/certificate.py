@@ -128,11 +128,4 @@ def check(
         asked = mesh.info.get("min_angle")
         min_angle = float(asked) if isinstance(asked, (int, float)) else None
     case = Case(mesh, mesh.domain if reference is None else reference, contains, min_angle)
-    name, first = RULES[0]
-    checks = [first(case)]
-    for name, rule in RULES[1:]:
-        if checks[0].failures:
-            checks.append(Check.skipped(name, "numbers are out of range"))
-        else:
-            checks.append(rule(case))
-    return Certificate(tuple(checks))
+    return Certificate.of(RULES, case)

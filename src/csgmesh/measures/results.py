@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass
+from typing import Any
 
 import numpy as np
 
@@ -100,6 +102,17 @@ class Certificate:
     """
 
     checks: tuple[Check, ...]
+
+    @staticmethod
+    def of(rules: Sequence[tuple[str, Callable[[Any], Check]]], case: object) -> Certificate:
+        """Check a case by rules; all but the first are skipped when numbers are out of range."""
+        checks = [rules[0][1](case)]
+        for name, rule in rules[1:]:
+            if checks[0].failures:
+                checks.append(Check.skipped(name, "numbers are out of range"))
+            else:
+                checks.append(rule(case))
+        return Certificate(tuple(checks))
 
     @property
     def ok(self) -> bool:

@@ -289,8 +289,8 @@ class LinearTree:
         n = self.n_leaves + self._more * int(np.count_nonzero(marked & 1))
         key, level = np.empty(n, np.int64), np.empty(n, np.int8)
         is_new, first = np.empty(n, np.uint8), np.empty(self.n_leaves, np.int64)
-        split = kernels.split_leaves if self.dim == 2 else kernels.split_octants
-        split(self.key, self.level, marked, key, level, is_new, first)
+        old = (self.key, self.level, marked)
+        kernels.split_leaves(*old, key, level, is_new, first, self.dim, deepest)
         return LinearTree(self.lo, self.extent, key, level), is_new, first
 
     def check_budget(self, marked: np.ndarray, max_leaves: int) -> None:

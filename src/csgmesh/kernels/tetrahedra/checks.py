@@ -6,7 +6,7 @@ import numpy as np
 from numba import njit
 
 from ..pointers import ENTRY, pointer
-from .predicates import insphere, orient3d
+from .net import in_sphere, orient_vertices
 
 
 @njit(**ENTRY)
@@ -15,24 +15,8 @@ def _orientations(points, cells, signs):
     corner = pointer(cells)
     sign = pointer(signs)
     for i in range(signs.shape[0]):
-        a = 3 * corner[4 * i]
-        b = 3 * corner[4 * i + 1]
-        c = 3 * corner[4 * i + 2]
-        d = 3 * corner[4 * i + 3]
-        o = orient3d(
-            p[a],
-            p[a + 1],
-            p[a + 2],
-            p[b],
-            p[b + 1],
-            p[b + 2],
-            p[c],
-            p[c + 1],
-            p[c + 2],
-            p[d],
-            p[d + 1],
-            p[d + 2],
-        )
+        h = 4 * i
+        o = orient_vertices(p, corner[h], corner[h + 1], corner[h + 2], corner[h + 3])
         sign[i] = 1 if o > 0.0 else (-1 if o < 0.0 else 0)
 
 
@@ -43,28 +27,10 @@ def _in_spheres(points, cells, others, signs):
     other = pointer(others)
     sign = pointer(signs)
     for i in range(signs.shape[0]):
-        a = 3 * corner[4 * i]
-        b = 3 * corner[4 * i + 1]
-        c = 3 * corner[4 * i + 2]
-        d = 3 * corner[4 * i + 3]
+        h = 4 * i
         e = 3 * other[i]
-        o = insphere(
-            p[a],
-            p[a + 1],
-            p[a + 2],
-            p[b],
-            p[b + 1],
-            p[b + 2],
-            p[c],
-            p[c + 1],
-            p[c + 2],
-            p[d],
-            p[d + 1],
-            p[d + 2],
-            p[e],
-            p[e + 1],
-            p[e + 2],
-        )
+        a, b, c, d = corner[h], corner[h + 1], corner[h + 2], corner[h + 3]
+        o = in_sphere(p, a, b, c, d, p[e], p[e + 1], p[e + 2])
         sign[i] = 1 if o > 0.0 else (-1 if o < 0.0 else 0)
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from numba import njit
 
 from ..pointers import ENTRY, pointer
-from .predicates import orient3d
+from .net import orient_point
 
 
 @njit(**ENTRY)
@@ -35,26 +35,13 @@ def find_containing(points, tets, boxes, candidates, firsts, counts, queries, fo
             if x > box[j + 3] or y > box[j + 4] or z > box[j + 5]:
                 continue
             inside = True
-            # With one corner in turn replaced by the query, orientation stays positive.
+            # With one corner in turn replaced by the query, orientation stays positive; the query
+            # stands last here, so that the other corners are turned round.
             for face in range(4):
-                a = 3 * tet[4 * t + (face + 1) % 4]
-                b = 3 * tet[4 * t + ((face + 2) if face % 2 == 0 else (face + 3)) % 4]
-                c = 3 * tet[4 * t + ((face + 3) if face % 2 == 0 else (face + 2)) % 4]
-                o = orient3d(
-                    x,
-                    y,
-                    z,
-                    p[a],
-                    p[a + 1],
-                    p[a + 2],
-                    p[b],
-                    p[b + 1],
-                    p[b + 2],
-                    p[c],
-                    p[c + 1],
-                    p[c + 2],
-                )
-                if o < 0.0:
+                a = tet[4 * t + (face + 1) % 4]
+                b = tet[4 * t + ((face + 2) if face % 2 == 0 else (face + 3)) % 4]
+                c = tet[4 * t + ((face + 3) if face % 2 == 0 else (face + 2)) % 4]
+                if orient_point(p, b, a, c, x, y, z) < 0.0:
                     inside = False
                     break
             if inside:

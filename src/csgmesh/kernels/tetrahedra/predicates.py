@@ -41,7 +41,7 @@ if JIT_IS_OFF:
 def orient3d(ax, ay, az, bx, by, bz, cx, cy, cz, dx, dy, dz):
     """Six times the volume of a, b, c, d, with an exact sign.
 
-    Positive when a, b, c run counterclockwise seen from where d is not, as corners of a cell do.
+    Positive when a, b, c run counterclockwise seen from d, as corners of a cell do.
     """
     bx_ = bx - ax
     by_ = by - ay

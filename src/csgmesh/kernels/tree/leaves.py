@@ -1,4 +1,4 @@
-"""Leaves of a linear quadtree: split, balanced, found."""
+"""Leaves of a linear quadtree: split (as those of an octree are), balanced, found."""
 
 from __future__ import annotations
 
@@ -9,9 +9,10 @@ from .morton import DEPTH, gathered, holder, is_inside, key_of
 
 
 @njit(**ENTRY)
-def split_leaves(key, level, marked, new_key, new_level, is_new, first):
-    """Replace leaves marked 1 by their four children; all others are copied.
+def split_leaves(key, level, marked, new_key, new_level, is_new, first, dim, deepest):
+    """Replace leaves marked 1 by their four or eight children; all others are copied.
 
+    dim, deepest: 2 or 3, and the levels below the root that its keys have bits for.
     is_new: 1 for children, and for leaves marked 2, which are to be looked at once more.
     first: new number of each old leaf, or of its first child.
     """
@@ -33,12 +34,12 @@ def split_leaves(key, level, marked, new_key, new_level, is_new, first):
             new[n] = mark[i] >> 1
             n += 1
         else:
-            step = 1 << (2 * (DEPTH - deep - 1))
-            for c in range(4):
+            step = 1 << (dim * (deepest - deep - 1))
+            for c in range(1 << dim):
                 out[n + c] = k + c * step
                 out_level[n + c] = deep + 1
                 new[n + c] = 1
-            n += 4
+            n += 1 << dim
     return n
 
 

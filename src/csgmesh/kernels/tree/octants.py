@@ -1,4 +1,4 @@
-"""Leaves of a linear octree: split, balanced, found; the companions in space of `leaves`."""
+"""Leaves of a linear octree: balanced, found; the companions in space of `leaves`."""
 
 from __future__ import annotations
 
@@ -42,40 +42,6 @@ def octant_key(x, y, z):
 def is_within(x, y, z):
     """Whether a place lies in the root."""
     return ((x | y | z) >> DEEP) == 0
-
-
-@njit(**ENTRY)
-def split_octants(key, level, marked, new_key, new_level, is_new, first):
-    """Replace leaves marked 1 by their eight children; all others are copied.
-
-    is_new: 1 for children, and for leaves marked 2, which are to be looked at once more.
-    first: new number of each old leaf, or of its first child.
-    """
-    keys = pointer(key)
-    levels = pointer(level)
-    mark = pointer(marked)
-    out = pointer(new_key)
-    out_level = pointer(new_level)
-    new = pointer(is_new)
-    at = pointer(first)
-    n = 0
-    for i in range(key.shape[0]):
-        k = keys[i]
-        deep = levels[i]
-        at[i] = n
-        if mark[i] & 1 == 0:
-            out[n] = k
-            out_level[n] = deep
-            new[n] = mark[i] >> 1
-            n += 1
-        else:
-            step = 1 << (3 * (DEEP - deep - 1))
-            for c in range(8):
-                out[n + c] = k + c * step
-                out_level[n + c] = deep + 1
-                new[n + c] = 1
-            n += 8
-    return n
 
 
 @njit(**HELPER)

@@ -2,13 +2,22 @@
 
 from __future__ import annotations
 
+from typing import Protocol
+
 import numpy as np
 
 from csgmesh.measures.results import Check, Failure, offenders
-from csgmesh.measures.rules.case import Case
+from csgmesh.mesh import Mesh
 
 
-def check_indices(case: Case) -> Check:
+class HasMesh(Protocol):
+    """A case of the plane or of space."""
+
+    @property
+    def mesh(self) -> Mesh: ...
+
+
+def check_indices(case: HasMesh) -> Check:
     """Every number points to something, and coordinates are finite."""
     mesh, rule = case.mesh, "indices"
     failures: list[Failure] = []
@@ -41,7 +50,7 @@ def check_indices(case: Case) -> Check:
     return Check.of(rule, total + mesh.points.size, failures)
 
 
-def check_points(case: Case) -> Check:
+def check_points(case: HasMesh) -> Check:
     """No two points are the same, and each belongs to a cell."""
     mesh, rule = case.mesh, "points"
     order = np.lexsort(mesh.points.T[::-1])

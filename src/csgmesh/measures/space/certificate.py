@@ -34,18 +34,7 @@ def check_space(
 ) -> Certificate:
     """Check a mesh of space against the domain it must mesh; see `csgmesh.check`."""
     case = SpaceCase(mesh, mesh.domain if reference is None else reference, contains)  # type: ignore[arg-type]
-    first = check_indices(case)  # type: ignore[arg-type]
-    checks = [first]
-    for name, rule in _RULES:
-        if first.failures:
-            checks.append(Check.skipped(name, "numbers are out of range"))
-        else:
-            checks.append(rule(case))
-    return Certificate(tuple(checks))
-
-
-def _points(case: SpaceCase) -> Check:
-    return check_points(case)  # type: ignore[arg-type]
+    return Certificate.of(_RULES, case)
 
 
 def check_orientation(case: SpaceCase) -> Check:
@@ -253,7 +242,8 @@ def check_samples(case: SpaceCase) -> Check:
 
 
 _RULES: tuple[tuple[str, Callable[[SpaceCase], Check]], ...] = (
-    ("points", _points),
+    ("indices", check_indices),
+    ("points", check_points),
     ("orientation", check_orientation),
     ("conforming", check_conforming),
     ("facets", check_facets),

@@ -27,18 +27,7 @@ def check_surface(
     """Check a mesh of a surface in space against the solid it bounds; see `csgmesh.check`."""
     mesh = with_facets(mesh)
     case = SpaceCase(mesh, mesh.domain if reference is None else reference, contains)  # type: ignore[arg-type]
-    first = check_indices(case)  # type: ignore[arg-type]
-    checks = [first]
-    for name, rule in _RULES:
-        if first.failures:
-            checks.append(Check.skipped(name, "numbers are out of range"))
-        else:
-            checks.append(rule(case))
-    return Certificate(tuple(checks))
-
-
-def _points(case: SpaceCase) -> Check:
-    return check_points(case)  # type: ignore[arg-type]
+    return Certificate.of(_RULES, case)
 
 
 def check_areas(case: SpaceCase) -> Check:
@@ -192,7 +181,8 @@ def check_samples(case: SpaceCase) -> Check:
 
 
 _RULES: tuple[tuple[str, Callable[[SpaceCase], Check]], ...] = (
-    ("points", _points),
+    ("indices", check_indices),
+    ("points", check_points),
     ("areas", check_areas),
     ("facets", check_cells),
     ("closed", check_closed),
