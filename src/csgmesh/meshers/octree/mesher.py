@@ -13,7 +13,8 @@ from csgmesh.errors import MeshingError
 from csgmesh.improve.tetrahedra import improve_tetrahedra
 from csgmesh.mesh import Mesh
 from csgmesh.meshers.hexahedra import hexahedral_mesh
-from csgmesh.meshers.octree.lattice import lattice
+from csgmesh.meshers.octree.cubes import mixed_cells
+from csgmesh.meshers.octree.lattice import Lattice, lattice
 from csgmesh.meshers.octree.sizes import SpaceSizes
 from csgmesh.meshers.surface import surface_mesh
 from csgmesh.meshers.tetrahedra import Tetrahedra, tetrahedralize
@@ -22,7 +23,7 @@ from csgmesh.options import check_choice, check_flag, check_growth, check_whole
 from csgmesh.size.field import Source
 from csgmesh.size.resolve import resolve
 
-CELLS = ("tetra", "hexahedron")
+CELLS = ("tetra", "hexahedron", "mixed")
 #: Times that sizes are made smaller where triangles of the surface are no faces of tetrahedra.
 ROUNDS = 5
 #: By so much, each time.
@@ -43,8 +44,10 @@ class Octree:
 
     Parameters
     ----------
-    cells : {"tetra", "hexahedron"}
-        What to make. Hexahedra come from a grid whose planes fit the flat faces, with sheets of
+    cells : {"tetra", "hexahedron", "mixed"}
+        What to make. ``"mixed"`` makes hexahedra of the lattice's cubes, one or two layers of them
+        away from the surface, pyramids around these, and tetrahedra for the rest. Hexahedra alone
+        come from a grid whose planes fit the flat faces, with sheets of
         cells along the others; the smallest size holds everywhere, and `gradation` and `improve`
         do not matter.
     gradation : float, default 0.3
@@ -65,7 +68,8 @@ class Octree:
     corners of the domain are edges and vertices, and vertices on the boundary lie on its exact
     surfaces. Regions and names are those of the domain. The same input gives the same bytes. Away
     from the surface, where leaves are equal, cells are those of the body-centred cubic lattice,
-    whose dihedral angles are 60 and 90 degrees.
+    whose dihedral angles are 60 and 90 degrees; of mixed cells, cubes and pyramids of a sixth of
+    one, whose dihedral angles are 45, 90 and 120 degrees.
 
     Jacobians of hexahedra are positive all over each cell, by Bernstein bounds.
 
@@ -147,9 +151,15 @@ class Octree:
         if self.cells == "hexahedron":
             sizes = even_sizes(domain, size, self.gradation, self.max_points)
             return hexahedral_mesh(domain, sizes, max_points=self.max_points, progress=progress)
-        return self._tetrahedra(domain, size, progress)
+        filled, surface, grid = self._tetrahedra(domain, size, progress)
+        info: dict[str, object] = {"method": "Octree", "options": dict(vars(self))}
+        if self.cells == "mixed":
+            return mixed_mesh(filled, surface, grid, info)
+        return tetra_mesh(filled, surface, info)
 
-    def _tetrahedra(self, domain: Plc, size: Any, progress: Progress | None) -> Mesh:
+    def _tetrahedra(
+        self, domain: Plc, size: Any, progress: Progress | None
+    ) -> tuple[Tetrahedra, SurfaceMesh, Lattice]:
         told = progress or _silent
         sizes = SpaceSizes.of(domain, size, self.gradation, self.max_points)
         for _ in range(ROUNDS):
@@ -168,7 +178,6 @@ class Octree:
                 f"the surface at ({x:.6g}, {y:.6g}, {z:.6g}) cannot be filled with tetrahedra, "
                 f"however fine: {len(filled.missing)} triangles are missing after {ROUNDS} rounds"
             )
-        del grid
         told("improve", 3, STAGES)
         if self.improve:
             better = improve_tetrahedra(
@@ -189,7 +198,7 @@ class Octree:
                 face=better[4],
             )
         told("improve", STAGES, STAGES)
-        return tetra_mesh(filled, surface, {"method": "Octree", "options": dict(vars(self))})
+        return filled, surface, grid
 
 
 def even_sizes(domain: Plc, size: Any, gradation: float, max_points: int) -> Source:
@@ -211,16 +220,38 @@ def even_sizes(domain: Plc, size: Any, gradation: float, max_points: int) -> Sou
 
 def tetra_mesh(filled: Tetrahedra, surface: SurfaceMesh, info: dict[str, object]) -> Mesh:
     """The mesh of tetrahedra, its facets named as the faces of the surface mesh."""
+    cells, region = {"tetra": filled.tets}, {"tetra": filled.region}
+    return _mesh(filled.points, cells, region, filled.triangles, filled.face, surface, info)
+
+
+def mixed_mesh(
+    filled: Tetrahedra, surface: SurfaceMesh, grid: Lattice, info: dict[str, object]
+) -> Mesh:
+    """The mesh with hexahedra, and pyramids around them, where the lattice is whole."""
+    mixed = mixed_cells(filled.points, filled.tets, filled.region, grid)
+    triangles = mixed.number[filled.triangles]
+    return _mesh(mixed.points, mixed.cells, mixed.region, triangles, filled.face, surface, info)
+
+
+def _mesh(
+    points: np.ndarray,
+    cells: dict[str, np.ndarray],
+    region: dict[str, np.ndarray],
+    triangles: np.ndarray,
+    face: np.ndarray,
+    surface: SurfaceMesh,
+    info: dict[str, object],
+) -> Mesh:
     domain = surface.plc
     return Mesh(
-        filled.points,
-        {"tetra": filled.tets},
-        {"tetra": filled.region},
+        points,
+        cells,
+        region,
         domain.region_names,
-        {"triangle": filled.triangles},
-        {"triangle": surface.face_marker[filled.face]},
+        {"triangle": triangles},
+        {"triangle": surface.face_marker[face]},
         domain.boundary_names,
-        {"triangle": surface.face_region[filled.face]},
+        {"triangle": surface.face_region[face]},
         domain=domain,  # type: ignore[arg-type]
         info=info,
     )
