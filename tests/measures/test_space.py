@@ -221,7 +221,10 @@ def test_pictures_show_the_side_that_faces_the_viewer(mesh: cm.Mesh) -> None:
     [
         ({"view": 3}, "view must be two angles"),
         ({"cut": ((0, 0), (1, 0))}, "cut must be a point and a normal"),
-        ({"color": "min_angle"}, "belongs to the plane"),
+        (
+            {"color": "min_angle"},
+            "the plane; here it is one of .region., .min_dihedral.",
+        ),
     ],
 )
 def test_wrong_options_of_pictures(mesh: cm.Mesh, options: dict, message: str) -> None:

@@ -142,7 +142,10 @@ def test_matplotlib_state_is_left_alone(square, tmp_path):
     ("options", "said"),
     [
         ({"colour": "region"}, "draw has no option 'colour'; did you mean 'color'"),
-        ({"color": "size"}, "color must be one of 'region', 'min_angle'; got 'size'"),
+        (
+            {"color": "size"},
+            "color must be one of 'region', 'min_angle', 'min_dihedral', 'scaled_jacobian'",
+        ),
         ({"figsize": (4, 0)}, "figsize must be two positive lengths"),
         ({"dpi": 0}, "dpi must be"),
     ],

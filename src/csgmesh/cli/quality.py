@@ -13,9 +13,7 @@ def quality(
     file: AnyPath,
     worst: Annotated[
         int,
-        typer.Option(
-            "--worst", "-w", min=0, metavar="N", help="List the N worst triangles and why."
-        ),
+        typer.Option("--worst", "-w", min=0, metavar="N", help="List the N worst cells and why."),
     ] = 0,
     param: Parameters = None,
     max_cells: MaxCells = None,

@@ -21,6 +21,11 @@ from csgmesh.viz.scene import Scene, mesh_scene, pslg_scene, tree_scene
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+#: What can fill the cells, by dimension.
+_COLORS: dict[int, tuple[str, ...]] = {
+    2: ("region", "min_angle"),
+    3: ("region", "min_dihedral", "scaled_jacobian"),
+}
 _FORMATS = {".png": "png", ".svg": "svg", ".pdf": "pdf"}
 #: What makes the same picture the same bytes: no dates, no random ids, no version.
 _METADATA = {
@@ -63,8 +68,9 @@ def draw(x: Any, path: str | os.PathLike[str] | None = None, **options: Any) -> 
         Draw there instead of in a figure of its own.
     figsize : (float, float), optional
         Width and height in inches; default after the shape of the domain.
-    color : {"region", "min_angle"}
-        What fills the cells: their region, or their smallest angle with a scale in degrees.
+    color : {"region", "min_angle", "min_dihedral", "scaled_jacobian"}
+        What fills the cells: their region, or a measure as `quality` has it, with a scale:
+        ``min_angle`` in the plane, the others in space. Cells without the measure are white.
     legend : bool
         Default True.
     title : str, optional
@@ -108,13 +114,19 @@ def draw(x: Any, path: str | os.PathLike[str] | None = None, **options: Any) -> 
     if chosen.domain is not None or isinstance(x, SizeField):
         return _kept(_field(x, chosen), target, chosen)
     is_domain = isinstance(x, Pslg)
-    if chosen.color == "min_angle" and not isinstance(x, Mesh):
-        raise InputError(f"draw: color='min_angle' needs a Mesh; got {type(x).__name__}")
+    if chosen.color != "region" and not isinstance(x, Mesh):
+        raise InputError(f"draw: color={chosen.color!r} needs a Mesh; got {type(x).__name__}")
     x = _drawable(x)
+    if chosen.color not in _COLORS[x.dim]:
+        known = ", ".join(map(repr, _COLORS[x.dim]))
+        other = "space" if x.dim == 2 else "the plane"
+        raise InputError(
+            f"draw: color={chosen.color!r} belongs to {other}; here it is one of {known}"
+        )
     if x.dim == 3:
-        from csgmesh.viz.space import draw_space
+        from csgmesh.viz.space_figure import compose_space
 
-        return _kept(draw_space(x, chosen), target, chosen)
+        return _kept(compose_space(x, chosen), target, chosen)
     _refuse_space_options(options)
     if isinstance(x, LinearTree):
         scene = tree_scene(x)
@@ -154,7 +166,7 @@ def _field(x: object, options: Options) -> Figure:
 
 
 def _check(options: Options) -> None:
-    check_choice("color", options.color, ("region", "min_angle"), "draw")
+    check_choice("color", options.color, tuple(dict.fromkeys((*_COLORS[2], *_COLORS[3]))), "draw")
     if np.shape(options.view) != (2,) or not np.isfinite(options.view).all():
         raise InputError(f"draw: view must be two angles in degrees; got {options.view!r}")
     if options.cut is not None and np.shape(options.cut) != (2, 3):

@@ -26,6 +26,17 @@ if TYPE_CHECKING:
 #: Ids in an SVG are hashes with this salt instead of random ones.
 _SALT = "csgmesh"
 _INCH = 72.0
+#: Colours of the measures that cells can be filled by, and what their scales say.
+SCALES = {
+    "min_angle": ScalarMappable(Normalize(0, 60), "viridis"),
+    "min_dihedral": ScalarMappable(Normalize(0, 90), "viridis"),
+    "scaled_jacobian": ScalarMappable(Normalize(0, 1), "viridis"),
+}
+_LABELS = {
+    "min_angle": "smallest angle (degrees)",
+    "min_dihedral": "smallest dihedral angle (degrees)",
+    "scaled_jacobian": "scaled Jacobian",
+}
 
 
 class Picture(Figure):
@@ -55,16 +66,20 @@ def compose(scene: Scene, values: np.ndarray | None, options: Options) -> Figure
     paint.paint_lines(axes, scene, colors, scale)
     paint.paint_points(axes, scene, colors)
     if values is not None:
-        scalar = ScalarMappable(Normalize(0, 60), "viridis")
-        bar = figure.colorbar(scalar, ax=axes, shrink=0.8, pad=0.02)
-        bar.set_label("smallest angle (degrees)", fontsize=8)
-        bar.ax.tick_params(labelsize=7)
-        bar.outline.set_linewidth(0.5)
+        add_scale(axes, options.color)
     title = scene.title if options.title is None else options.title
     axes.set_title(title, fontsize=9.5, color="#333333", parse_math=False)
     if entries:
         legend.add(axes, entries)
     return figure
+
+
+def add_scale(axes: Axes, color: str) -> None:
+    """A bar beside a picture that tells what the colours of a measure mean."""
+    bar = axes.figure.colorbar(SCALES[color], ax=axes, shrink=0.8, pad=0.02)
+    bar.set_label(_LABELS[color], fontsize=8)
+    bar.ax.tick_params(labelsize=7)
+    bar.outline.set_linewidth(0.5)
 
 
 def save(figure: Figure, path: Path, form: str, metadata: Mapping[str, Any], dpi: float) -> None:
