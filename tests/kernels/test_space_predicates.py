@@ -73,6 +73,16 @@ def in_a_plane(rng: np.random.Generator) -> np.ndarray:
     return rng.random(3) + rng.random((5, 2)) @ rng.random((2, 3))
 
 
+def on_a_circle_of_a_lattice(rng: np.random.Generator) -> np.ndarray:
+    """Trapezoids, of which half have no circle: one leg moved; and any point."""
+    a, b, h, x, y = rng.integers(1, 5, 5)
+    trapezoid = np.array([[-a, x, y], [a, x, y], [-b, x + h, y - h], [b, x + h, y - h]])
+    if rng.random() < 0.5:
+        trapezoid[3, 0] += 1
+    points = np.vstack([trapezoid * (2.0**-22 * 1048573), rng.random(3)])
+    return points[rng.permutation(5)][:, rng.permutation(3)]
+
+
 def far_from_the_origin(rng: np.random.Generator) -> np.ndarray:
     return 1e9 + in_a_plane(rng)
 
@@ -94,6 +104,7 @@ def of_many_magnitudes(rng: np.random.Generator) -> np.ndarray:
         an_ulp_apart,
         on_corners_of_a_box,
         in_a_plane,
+        on_a_circle_of_a_lattice,
         far_from_the_origin,
         of_many_magnitudes,
     ],

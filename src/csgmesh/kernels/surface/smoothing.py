@@ -90,12 +90,16 @@ def smooth_surface(arrays, start, stop):
         n = fan_from(view, view.link[2 * v], 0)
         if n < 3:
             continue
-        now = worst_at(view, n, p[3 * v], p[3 * v + 1], p[3 * v + 2], -2.0)
-        bound = min(now, GOOD)
         cx, cy, cz = centre_of(view, v, n)
+        # What the star is now need not be known where it will be good.
+        bound = GOOD
         for _ in range(2):
             x, y, z = put_back(view, 2, view.owner[v], cx, cy, cz)
-            if worst_at(view, n, x, y, z, bound) >= bound:
+            worst = worst_at(view, n, x, y, z, bound)
+            if worst < bound and bound == GOOD:
+                bound = min(worst_at(view, n, p[3 * v], p[3 * v + 1], p[3 * v + 2], -2.0), GOOD)
+                worst = worst_at(view, n, x, y, z, bound)
+            if worst >= bound:
                 move(view, v, x, y, z)
                 moves += 1
                 break

@@ -1,16 +1,18 @@
 """What is left of orientation and in-sphere tests when a filter cannot tell; exact signs.
 
-Stages, each entered only when the one before cannot tell: corners of boxes and rectangles parallel
-to the axes; small multiples of a power of two or of the smallest difference, for which plain
+Stages, each entered only when the one before cannot tell: planes, boxes and rectangles parallel to
+the axes; small multiples of a power of two or of the smallest difference, for which plain
 arithmetic rounds nothing; about 32 digits with a bound of their error; larger multiples, whose
-determinant is zero or above it; determinants of the coordinates themselves as expansions, after
-J. R. Shewchuk, "Adaptive precision floating-point arithmetic and fast robust geometric predicates",
-Discrete & Computational Geometry 18 (1997).
+determinant is zero or above it; circles through four points with few bits; determinants of the
+coordinates themselves as expansions, after J. R. Shewchuk, "Adaptive precision floating-point
+arithmetic and fast robust geometric predicates", Discrete & Computational Geometry 18 (1997).
 
 Both functions are compiled once and called by name from the machine code of every other kernel.
 """
 
 from __future__ import annotations
+
+from math import frexp, ldexp
 
 from numba import njit
 
@@ -36,11 +38,8 @@ MANY = 2.0**17
 @njit(**HELPER)
 def are_multiples(x, n, largest, parts):
     """Whether n doubles are multiples of one in `parts` of a power of two not below the largest."""
-    unit = 2.0**-40
-    while unit < largest:
-        unit *= 2.0
-    while unit * 0.5 >= largest and unit > 1e-280:
-        unit *= 0.5
+    share, exponent = frexp(largest)
+    unit = max(ldexp(1.0, exponent if share > 0.5 else exponent - 1), 1e-280)
     magic = ROUNDING * (unit / parts)
     rest = 0.0
     for i in range(n):
@@ -155,6 +154,10 @@ def exact_volume(x, y, z, i, j, k, m, h, spare):
 @njit(**HELPER)
 def orient3d_adaptive(ax, ay, az, bx, by, bz, cx, cy, cz, dx, dy, dz):
     """Orientation of four points with an exact sign."""
+    if (ax == bx and ax == cx and ax == dx) or (ay == by and ay == cy and ay == dy):
+        return 0.0
+    if az == bz and az == cz and az == dz:
+        return 0.0
     x = scratch(4)
     y = scratch(4)
     z = scratch(4)
@@ -216,6 +219,56 @@ def are_on_box(x, y, z):
             if c[i] != low and c[i] != high:
                 return False
     return True
+
+
+@njit(**HELPER)
+def are_cocircular(d):
+    """Whether the origin and three points with few bits lie on one circle, in plain arithmetic.
+
+    If w = r u + s v, it lies on the circle of 0, u, v where |w|^2 = r |u|^2 + s |v|^2.
+    """
+    if determinant(d, 0, 1, 2)[0] != 0.0:
+        return False
+    u = d[0] * d[0] + d[1] * d[1] + d[2] * d[2]
+    v = d[3] * d[3] + d[4] * d[4] + d[5] * d[5]
+    w = d[6] * d[6] + d[7] * d[7] + d[8] * d[8]
+    for axis in range(3):
+        i = 1 if axis == 0 else 0
+        j = 1 if axis == 2 else 2
+        uv = d[i] * d[3 + j] - d[j] * d[3 + i]
+        if uv != 0.0:
+            wv = d[6 + i] * d[3 + j] - d[6 + j] * d[3 + i]
+            uw = d[i] * d[6 + j] - d[j] * d[6 + i]
+            return w * uv == u * wv + v * uw
+    return False
+
+
+@njit(**HELPER)
+def has_circle(x, y, z):
+    """Whether four of five points are seen to be on one circle: points of a lattice, mostly."""
+    u = scratch(4)
+    v = scratch(4)
+    w = scratch(4)
+    d = scratch(9)
+    t = scratch(9)
+    q = scratch(9)
+    for left in range(5):
+        n = 0
+        for i in range(5):
+            if i != left:
+                u[n] = x[i]
+                v[n] = y[i]
+                w[n] = z[i]
+                n += 1
+        largest = take_differences(u, v, w, 3, d, t)
+        if largest < 0.0:
+            continue
+        if are_multiples(d, 9, largest, FEW):
+            if are_cocircular(d):
+                return True
+        elif make_integers(d, 9, largest, q) and are_cocircular(q):
+            return True
+    return False
 
 
 @njit(**HELPER)
@@ -316,6 +369,8 @@ def insphere_adaptive(ax, ay, az, bx, by, bz, cx, cy, cz, dx, dy, dz, ex, ey, ez
     if abs(det) > DOUBLED * size:
         return det
     if largest >= 0.0 and are_multiples(d, 12, largest, MANY):
+        return 0.0
+    if has_circle(x, y, z):
         return 0.0
     return exact_insphere(x, y, z)
 

@@ -6,6 +6,7 @@ import numpy as np
 from numba import njit
 
 from ..pointers import ENTRY, HELPER, pointer
+from .net import slot_of
 
 NOWHERE = np.int64(-1)
 
@@ -65,6 +66,58 @@ def face_of(vert, t, a, b, c):
     return odd if found == 3 else NOWHERE
 
 
+@njit(**HELPER)
+def cell_with(vert, nei, mark, cavity, room, t, v, w, stamp):
+    """A tetrahedron of v, from t which is one, that has w, too; -1 for none, -2 for no room."""
+    cavity[0] = t
+    mark[t] = stamp
+    n = np.int64(1)
+    i = 0
+    while i < n:
+        t = cavity[i]
+        i += 1
+        h = 4 * t
+        if vert[h] == w or vert[h + 1] == w or vert[h + 2] == w or vert[h + 3] == w:
+            return t
+        for h in range(4 * t, 4 * t + 4):
+            if vert[h] == v:
+                continue
+            u = nei[h] >> 2
+            if mark[u] != stamp:
+                if n >= room:
+                    return NOWHERE - 1
+                mark[u] = stamp
+                cavity[n] = u
+                n += 1
+    return NOWHERE
+
+
+@njit(**HELPER)
+def face_around(vert, nei, t, a, b, c):
+    """Corner opposite to the face a, b, c in a tetrahedron around edge a, b; -1 for none.
+
+    t is one of them. Each is left by the face that its last corner lies in.
+    """
+    i = slot_of(vert, t, a)
+    j = slot_of(vert, t, b)
+    k = np.int64(0)
+    while k in (i, j):
+        k += 1
+    back = 4 * t + k
+    ahead = 4 * t + 6 - i - j - k
+    if vert[back] == c:
+        return ahead
+    first = t
+    while vert[ahead] != c:
+        last = vert[ahead]
+        ahead = nei[back]
+        t = ahead >> 2
+        if t == first:
+            return NOWHERE
+        back = 4 * t + slot_of(vert, t, last)
+    return back
+
+
 @njit(**ENTRY)
 def find_faces(verts, neis, marks, homes, triangles, faces, work, counts):
     """faces[i] = corner opposite to triangle i in a tetrahedron that has it, -1 if none has.
@@ -79,8 +132,6 @@ def find_faces(verts, neis, marks, homes, triangles, faces, work, counts):
     face = pointer(faces)
     cavity = pointer(work[0])
     room = work.shape[1]
-    last = NOWHERE
-    n = np.int64(0)
     for i in range(counts[0], faces.shape[0]):
         a = corner[3 * i]
         b = corner[3 * i + 1]
@@ -88,17 +139,12 @@ def find_faces(verts, neis, marks, homes, triangles, faces, work, counts):
         face[i] = -1
         if home[a] < 0 or home[b] < 0 or home[c] < 0:
             continue
-        if a != last:
-            counts[1] += 2
-            n = star(vert, nei, mark, cavity, room, home[a], a, counts[1])
-            if n < 0:
-                counts[0] = i
-                return 1
-            last = a
-        for s in range(n):
-            h = face_of(vert, cavity[s], a, b, c)
-            if h >= 0:
-                face[i] = h
-                break
+        counts[1] += 2
+        t = cell_with(vert, nei, mark, cavity, room, home[a], a, b, counts[1])
+        if t < NOWHERE:
+            counts[0] = i
+            return 1
+        if t >= 0:
+            face[i] = face_around(vert, nei, t, a, b, c)
     counts[0] = faces.shape[0]
     return 0

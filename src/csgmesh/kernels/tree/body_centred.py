@@ -13,7 +13,6 @@ from numba import njit
 from ..pointers import ENTRY, HELPER, pointer
 from .morton import holder
 from .octants import DEEP, gathered_thrice, is_within, octant_key
-from .triangle_distance import square_distance
 
 #: Neighbours that are no leaf of the same size: outside the root or larger; smaller.
 NONE = -1
@@ -54,104 +53,6 @@ def number_corners(key, level, table, number, leaf_corner, corner):
                 m += 1
             out[8 * i + c] = numbers[at]
     return m
-
-
-@njit(**ENTRY)
-def mark_near_triangles(
-    key, level, box, triangles, begin, end, share, leaf_corner, stack, near_centre, near_corner
-):
-    """Mark centres and corners of leaves nearer to triangles than `share` of the leaf's side.
-
-    triangles: (m, 9) coordinates. Leaves are looked for by descent from the root.
-    """
-    keys = pointer(key)
-    levels = pointer(level)
-    at = pointer(box)
-    tri = pointer(triangles)
-    corner = pointer(leaf_corner)
-    todo = pointer(stack)
-    centre_flag = pointer(near_centre)
-    corner_flag = pointer(near_corner)
-    n = key.shape[0]
-    near = 0
-    unit = at[3]
-    for t in range(begin, end):
-        lx = (min(tri[9 * t], tri[9 * t + 3], tri[9 * t + 6]) - at[0]) / unit
-        ly = (min(tri[9 * t + 1], tri[9 * t + 4], tri[9 * t + 7]) - at[1]) / unit
-        lz = (min(tri[9 * t + 2], tri[9 * t + 5], tri[9 * t + 8]) - at[2]) / unit
-        hx = (max(tri[9 * t], tri[9 * t + 3], tri[9 * t + 6]) - at[0]) / unit
-        hy = (max(tri[9 * t + 1], tri[9 * t + 4], tri[9 * t + 7]) - at[1]) / unit
-        hz = (max(tri[9 * t + 2], tri[9 * t + 5], tri[9 * t + 8]) - at[2]) / unit
-        todo[0] = 0
-        todo[1] = 0
-        height = 1
-        while height > 0:
-            height -= 1
-            k = todo[2 * height]
-            deep = todo[2 * height + 1]
-            near = holder(keys, n, k, near)
-            x = gathered_thrice(k)
-            y = gathered_thrice(k >> 1)
-            z = gathered_thrice(k >> 2)
-            if levels[near] <= deep:
-                mark_leaf(
-                    near,
-                    x,
-                    y,
-                    z,
-                    1 << (DEEP - deep),
-                    at,
-                    tri,
-                    t,
-                    share,
-                    corner,
-                    centre_flag,
-                    corner_flag,
-                )
-                continue
-            half = 1 << (DEEP - deep - 1)
-            reach = share * half
-            for c in range(8):
-                u = x + (c & 1) * half
-                v = y + ((c >> 1) & 1) * half
-                w = z + (c >> 2) * half
-                if (
-                    lx <= u + half + reach
-                    and hx >= u - reach
-                    and ly <= v + half + reach
-                    and hy >= v - reach
-                    and lz <= w + half + reach
-                    and hz >= w - reach
-                ):
-                    todo[2 * height] = k + (c << (3 * (DEEP - deep - 1)))
-                    todo[2 * height + 1] = deep + 1
-                    height += 1
-
-
-@njit(**HELPER)
-def mark_leaf(i, x, y, z, size, at, tri, t, share, corner, centre_flag, corner_flag):
-    """Mark the centre and the corners of one leaf by one triangle."""
-    unit = at[3]
-    side = size * unit
-    cx = at[0] + (x + 0.5 * size) * unit
-    cy = at[1] + (y + 0.5 * size) * unit
-    cz = at[2] + (z + 0.5 * size) * unit
-    square = square_distance(tri, t, cx, cy, cz)
-    reach = share * side
-    if square < reach * reach:
-        centre_flag[i] = 1
-    far = reach + 0.8660254037844387 * side
-    if square >= far * far:
-        return
-    for c in range(8):
-        j = corner[8 * i + c]
-        if corner_flag[j] != 0:
-            continue
-        px = cx + ((c & 1) - 0.5) * side
-        py = cy + (((c >> 1) & 1) - 0.5) * side
-        pz = cz + ((c >> 2) - 0.5) * side
-        if square_distance(tri, t, px, py, pz) < reach * reach:
-            corner_flag[j] = 1
 
 
 @njit(**HELPER)

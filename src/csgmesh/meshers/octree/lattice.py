@@ -60,25 +60,8 @@ def lattice(sizes: SpaceSizes, surface: SurfaceMesh, max_points: int = 10**7) ->
     tree = lattice_tree(sizes, surface, max_points)
     leaf_corner, corner = numbered_corners(tree)
     shape = np.ascontiguousarray(surface.points[surface.triangles]).reshape(-1)
-    near_centre = np.zeros(tree.n_leaves, np.uint8)
-    near_corner = np.zeros(len(corner), np.uint8)
     flat_corner, place = leaf_corner.reshape(-1), corner.reshape(-1)
-    stack = np.empty(16 * tree.deepest, np.int64)
-    for begin in range(0, surface.n_triangles, _SLICE):
-        end = min(begin + _SLICE, surface.n_triangles)
-        kernels.mark_near_triangles(
-            tree.key,
-            tree.level,
-            tree.unit,
-            shape,
-            begin,
-            end,
-            NEAR,
-            flat_corner,
-            stack,
-            near_centre,
-            near_corner,
-        )
+    near_centre, near_corner = _near(tree, flat_corner, len(corner), shape)
     inside = _inside(tree, corner, flat_corner, near_centre, near_corner, surface, shape)
     points = np.empty((int(np.count_nonzero(inside)), 3))
     centre_point = np.empty(tree.n_leaves, np.int64)
@@ -148,6 +131,39 @@ def numbered_corners(tree: LinearTree) -> tuple[np.ndarray, np.ndarray]:
         tree.key, tree.level, table, number, leaf_corner.reshape(-1), corner.reshape(-1)
     )
     return leaf_corner, corner[:n]
+
+
+def _near(
+    tree: LinearTree, leaf_corner: np.ndarray, n_corners: int, shape: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Which centres and which corners are too near to triangles (m * 9,), uint8."""
+    near_centre = np.zeros(tree.n_leaves, np.uint8)
+    near_corner = np.zeros(n_corners, np.uint8)
+    largest = np.empty(n_corners, np.int64)
+    kernels.largest_leaves(tree.level, leaf_corner, largest)
+    n = len(shape) // 9
+    at_once = min(n, _SLICE)
+    frames = np.empty(4 * (tree.deepest + 1), np.int64)
+    bounds = np.empty(6 * at_once)
+    lists = np.empty((tree.deepest + 2) * at_once + 1, np.int32)
+    for begin in range(0, n, _SLICE):
+        kernels.mark_near_triangles(
+            tree.key,
+            tree.level,
+            tree.unit,
+            shape,
+            begin,
+            min(begin + _SLICE, n),
+            NEAR,
+            leaf_corner,
+            largest,
+            frames,
+            bounds,
+            lists,
+            near_centre,
+            near_corner,
+        )
+    return near_centre, near_corner
 
 
 def _inside(
