@@ -21,6 +21,15 @@ Progress = Callable[[str, int, int], None]
 
 #: Longest reason told in a table.
 _WIDEST = 70
+#: Smallest angles of the best cells, radians; dihedral ones in space.
+_BEST = {
+    "triangle": np.pi / 3,
+    "quad": np.pi / 2,
+    "tetra": np.arccos(1 / 3),
+    "hexahedron": np.pi / 2,
+    "wedge": np.pi / 3,
+    "pyramid": np.arccos(1 / np.sqrt(3)),
+}
 
 
 @dataclass(frozen=True)
@@ -33,10 +42,11 @@ class Row:
     cells : str
         Numbers of cells by kind.
     worst, mean : float
-        Quality of the cells: the scaled Jacobian of quads; of triangles the sine of the smallest
-        angle over that of 60 degrees. 1 is best.
+        Quality of the cells: the scaled Jacobian of quads and hexahedra; of others the sine of the
+        smallest angle over that of the best cell: 60 degrees in triangles, dihedral angles of 70.5
+        in tetrahedra, 60 in wedges, 54.7 in pyramids. 1 is best.
     min_angle : float
-        Degrees.
+        Degrees; of cells in space the smallest dihedral angle.
     seconds : float
         Processor time of a second run, when everything is compiled.
     megabytes : float
@@ -102,7 +112,7 @@ def compare(
     size : float, mapping, callable or SizeField, optional
         Wanted edge length, as `generate` takes it.
     meshers : mapping of str to mesher, optional
-        By the names to print. Default: all of the plane, with their own options.
+        By the names to print. Default: all of the plane, or all of space, with their own options.
     deviation, snap : float, optional
         As `generate` takes them.
     max_points : int, optional
@@ -131,7 +141,7 @@ def compare(
 
     domain = evaluate(shape, deviation=deviation, snap=snap)
     resolve(size, domain)
-    chosen = plane_meshers() if meshers is None else dict(meshers)
+    chosen = meshers_of(domain.dim) if meshers is None else dict(meshers)
     rows = []
     for k, (name, mesher) in enumerate(chosen.items()):
         if not callable(getattr(mesher, "generate", None)):
@@ -142,11 +152,20 @@ def compare(
     return Comparison(tuple(rows))
 
 
-def plane_meshers() -> dict[str, Any]:
-    """Every mesher of the plane, some with two sets of options."""
+def meshers_of(dim: int) -> dict[str, Any]:
+    """Every mesher of the plane or of space, some with several sets of options."""
     from csgmesh import meshers as m
 
-    found: dict[str, Any] = {
+    if dim == 3:
+        return {
+            "SurfaceRefinement": m.SurfaceRefinement(),
+            "Octree": m.Octree(),
+            "Octree, mixed": m.Octree(cells="mixed"),
+            "Octree, hexahedra": m.Octree(cells="hexahedron"),
+            "Sweep": m.Sweep(),
+            "Sweep, hexahedra": m.Sweep(m.QuadPairing()),
+        }
+    return {
         "ConstrainedDelaunay": m.ConstrainedDelaunay(),
         "DelaunayRefinement": m.DelaunayRefinement(),
         "DelaunayRefinement, improved": m.DelaunayRefinement(improve=True),
@@ -155,7 +174,6 @@ def plane_meshers() -> dict[str, Any]:
         "Structured": m.Structured(),
         "Structured, triangles": m.Structured(cells="triangle"),
     }
-    return found
 
 
 def _bounded(mesher: Any, max_points: int | None) -> Any:
@@ -188,20 +206,21 @@ def _measured(
     name: str, mesh: Mesh, domain: Pslg, size: Any, seconds: float, megabytes: float
 ) -> Row:
     from csgmesh.measures import quality
+    from csgmesh.measures.space.quality import SpaceQuality
 
     measured = quality(mesh)
-    shape = np.where(
-        np.isnan(measured.scaled_jacobian),
-        np.sin(np.radians(measured.min_angle)) / np.sin(np.pi / 3),
-        measured.scaled_jacobian,
-    )
+    angle = measured.min_dihedral if isinstance(measured, SpaceQuality) else measured.min_angle
+    best = np.concatenate([np.full(len(rows), _BEST[kind]) for kind, rows in mesh.cells.items()])
+    shape = np.sin(np.radians(angle)) / np.sin(best)
+    has_jacobian = ~np.isnan(measured.scaled_jacobian)
+    shape[has_jacobian] = measured.scaled_jacobian[has_jacobian]
     cells = ", ".join(f"{len(rows):,} {kind}s" for kind, rows in mesh.cells.items())
     return Row(
         name,
         cells,
         float(shape.min()),
         float(shape.mean()),
-        float(measured.min_angle.min()),
+        float(angle.min()),
         seconds,
         megabytes,
         _size_error(mesh, domain, size),
@@ -213,7 +232,7 @@ def _size_error(mesh: Mesh, domain: Pslg, size: Any) -> float:
 
     Between named boundaries and what is around, the gradation decides what is wanted.
     """
-    from csgmesh.mesh.topology import edges_of
+    from csgmesh.mesh.topology import edge_ends
     from csgmesh.size import resolve
 
     wanted = resolve(size, domain)
@@ -222,11 +241,13 @@ def _size_error(mesh: Mesh, domain: Pslg, size: Any) -> float:
     logs = [np.zeros(0)]
     if wanted.boundary:
         for markers, source in wanted.boundary:
-            rows = mesh.facets["line"][np.isin(mesh.facet_marker["line"], markers)]
-            logs.append(_logs(mesh.points, rows, source))
+            facets = {
+                kind: rows[np.isin(mesh.facet_marker[kind], markers)]
+                for kind, rows in mesh.facets.items()
+            }
+            logs.append(_logs(mesh.points, edge_ends(facets, mesh.n_points), source))
     elif wanted.default is not None:
-        rows = edges_of(mesh.cells, mesh.n_points).points
-        logs.append(_logs(mesh.points, rows, wanted.default))
+        logs.append(_logs(mesh.points, edge_ends(mesh.cells, mesh.n_points), wanted.default))
     joined = np.concatenate(logs)
     return float(joined.mean()) if len(joined) else np.nan
 
@@ -235,4 +256,5 @@ def _logs(points: np.ndarray, rows: np.ndarray, wanted: Any) -> np.ndarray:
     from csgmesh.size.resolve import evaluate as sizes_at
 
     a, b = points[rows[:, 0]], points[rows[:, 1]]
-    return np.asarray(np.abs(np.log(np.hypot(*(b - a).T) / sizes_at(wanted, 0.5 * (a + b)))))
+    length = np.sqrt(((b - a) ** 2).sum(axis=1))
+    return np.asarray(np.abs(np.log(length / sizes_at(wanted, 0.5 * (a + b)))))

@@ -128,7 +128,7 @@ class DomainFile:
         return mesh
 
     def compare(self, progress: Callable[[str, int, int], None] | None = None) -> Comparison:
-        """The domain through every mesher of the plane, that of the file first.
+        """The domain through every mesher that can take it, that of the file first.
 
         Raises
         ------
@@ -137,14 +137,14 @@ class DomainFile:
         EvaluationError
             The domain is empty or unbounded.
         """
-        from csgmesh.comparison import compare, plane_meshers
+        from csgmesh.comparison import compare, meshers_of
 
         meshers = {} if self.mesher is None else {"as the file says": self.mesher}
         try:
             return compare(
                 self.shape,
                 self.size,
-                meshers | plane_meshers(),
+                meshers | meshers_of(getattr(self.shape, "dim", 2)),
                 deviation=self.deviation,
                 snap=self.snap,
                 max_points=max(16, self.limits.cells // 2),

@@ -122,6 +122,23 @@ def edges_of(cells: Mapping[str, np.ndarray], n_points: int) -> Edges:
     )
 
 
+def edge_ends(cells: Mapping[str, np.ndarray], n_points: int) -> np.ndarray:
+    """Ends of the edges of lines, plane cells or cells of space, each edge once, (e, 2), sorted.
+
+    Examples
+    --------
+    >>> edge_ends({"line": np.array([[0, 1], [2, 1]])}, 3)
+    array([[0, 1],
+           [1, 2]])
+    """
+    keys = [np.zeros(0, np.int64)]
+    for kind, rows in cells.items():
+        for a, b in KINDS[kind].edges:
+            low, high = np.minimum(rows[:, a], rows[:, b]), np.maximum(rows[:, a], rows[:, b])
+            keys.append(low * n_points + high)
+    return np.stack(np.divmod(np.unique(np.concatenate(keys)), n_points), axis=1)
+
+
 def components(edges: Edges, is_open: np.ndarray | None = None) -> tuple[int, np.ndarray]:
     """Components of the interior: cells are neighbours across edges, not at vertices.
 

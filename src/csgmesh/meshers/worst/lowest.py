@@ -18,7 +18,7 @@ def lowest(values: np.ndarray, count: int) -> np.ndarray:
 
 
 def mean_edges(points: np.ndarray, a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    """Mean length of the edges from a to b at each vertex; an edge of two cells counts twice."""
+    """Mean length of the edges from a to b at each vertex."""
     length = np.sqrt(((points[b] - points[a]) ** 2).sum(axis=1))
     total = np.bincount(a, length, len(points)) + np.bincount(b, length, len(points))
     number = np.bincount(a, None, len(points)) + np.bincount(b, None, len(points))

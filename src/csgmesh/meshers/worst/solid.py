@@ -11,6 +11,7 @@ from csgmesh.measures import quality
 from csgmesh.mesh import KINDS, Mesh
 from csgmesh.mesh.faces import canonical_faces, faces_of
 from csgmesh.mesh.surfaces import is_surface
+from csgmesh.mesh.topology import edge_ends
 from csgmesh.meshers.worst.lowest import JUMP, lowest, mean_edges
 
 #: Facets that meet at less than this in one cell leave it no better angle, degrees.
@@ -24,7 +25,7 @@ def worst_solids(mesh: Mesh, count: int) -> list[dict[str, object]]:
     angle = quality(mesh).min_dihedral
     worst = lowest(angle, count)
     cells = {kind: rows[:, : KINDS[kind].n_corners] for kind, rows in mesh.cells.items()}
-    mean = mean_edges(mesh.points, *_edges(cells).T)
+    mean = mean_edges(mesh.points, *edge_ends(cells, mesh.n_points).T)
     on_boundary = np.zeros(mesh.n_points, bool)
     for rows in mesh.facets.values():
         on_boundary[rows] = True
@@ -44,12 +45,6 @@ def worst_solids(mesh: Mesh, count: int) -> list[dict[str, object]]:
         {"place": places[cell].tolist(), "angle": float(angle[cell]), "reason": reasons[cell]}
         for cell in worst.tolist()
     ]
-
-
-def _edges(cells: dict[str, np.ndarray]) -> np.ndarray:
-    """Both ends of each edge of each cell, (k, 2)."""
-    edges = [rows[:, list(edge)] for kind, rows in cells.items() for edge in KINDS[kind].edges]
-    return np.concatenate(edges)
 
 
 def _fills_an_edge(mesh: Mesh, kind: str, rows: np.ndarray) -> np.ndarray:
