@@ -1,231 +1,213 @@
 """Meshing of solids beside Gmsh, TetGen, Netgen and rapidmesh: cells a second and what they are.
 
 Run with ``python benchmarks/space.py [SECTION]…``; sections are uniform, graded, surface,
-hexahedra, memory and evaluation, all unless named. Writes results/space_SECTION.json. Times are
-processor times of whole calls on one thread, from the description to arrays.
+hexahedra, memory and evaluation, all unless named. Each measurement has a process of its own and a
+time limit, so that all of them end within some twelve minutes. What a section finds replaces what
+results/space.json had of it; ``--dry`` writes nothing, ``--small`` asks for a tenth of the cells
+and writes nothing.
+
+Times are processor times of whole calls on one thread, from the description to arrays. TetGen
+knows no solids: it gets csgmesh's surface, whose time counts.
 """
 
 from __future__ import annotations
 
-import statistics
+import json
+import os
+import subprocess
 import sys
-import time
-import tracemalloc
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
-import numpy as np
-import space_peers as peers
-from report import save, show
+from report import RESULTS, machine, show
 
-import csgmesh as cm
-
-Arrays = tuple[np.ndarray, np.ndarray]
 Row = dict[str, Any]
-#: Peers that make fewer cells a second than this are run once, and not for a million cells.
-SLOW = 20_000.0
+Rows = list[Row]
+
 PACKAGES = ("gmsh", "tetgen", "netgen-mesher", "rapidmesh", "manifold3d")
-UNIFORM = (
-    peers.ours,
-    peers.gmsh_hxt,
-    peers.gmsh_delaunay,
-    peers.rapidmesh,
-    peers.tetgen,
-    peers.netgen,
+ONE_THREAD = dict.fromkeys(
+    ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS"), "1"
 )
+#: Seconds that a measurement may take.
+LIMIT = 75.0
+#: Cells times the cube of the edge length, which hardly depends on it.
+UNIFORM = {
+    "ours": 15.5,
+    "gmsh_hxt": 7.1,
+    "gmsh_delaunay": 7.1,
+    "rapidmesh": 7.1,
+    "tetgen": 15.5,
+    "netgen": 7.1,
+}
+#: Peers without a bar are slow enough to be measured once.
+REPEATED = ("ours", "gmsh_hxt")
+#: Triangles times the square of the edge length.
+SURFACE = {"our_surface": 29.8, "gmsh_surface": 29.2}
+#: Edge lengths at the bore at which both make about so many cells.
+GRADED = {
+    100_000: {"ours_graded": 0.025, "gmsh_graded": 0.0115},
+    500_000: {"ours_graded": 0.0105, "gmsh_graded": 0.00485},
+}
 
 
-def dihedrals(points: np.ndarray, tets: np.ndarray) -> np.ndarray:
-    """All dihedral angles in degrees, (n, 6)."""
-    corner = points[tets]
-    normal = [
-        np.cross(corner[:, b] - corner[:, a], corner[:, c] - corner[:, a])
-        for a, b, c in ((1, 3, 2), (0, 2, 3), (0, 3, 1), (0, 1, 2))
-    ]
-    unit = [n / np.sqrt((n**2).sum(axis=1))[:, None] for n in normal]
-    pairs = ((0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3))
-    cosines = [-(unit[a] * unit[b]).sum(axis=1) for a, b in pairs]
-    return np.degrees(np.arccos(np.clip(np.column_stack(cosines), -1.0, 1.0)))
-
-
-def angles(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:
-    """All angles of triangles in degrees, (n, 3)."""
-    corner = points[triangles]
-    found = []
-    for k in range(3):
-        u, v = (corner[:, (k + i) % 3] - corner[:, k] for i in (1, 2))
-        across = np.sqrt((np.cross(u, v) ** 2).sum(axis=1))
-        found.append(np.degrees(np.arctan2(across, (u * v).sum(axis=1))))
-    return np.column_stack(found)
-
-
-def timed(run: Callable[[], Arrays], repeats: int) -> tuple[float, Arrays]:
-    """Median processor time and the last result."""
-    times = []
-    for _ in range(repeats):
-        start = time.process_time()
-        out = run()
-        times.append(time.process_time() - start)
-    return statistics.median(times), out
-
-
-def sized(mesher: Callable[[float], Arrays], cells: int, power: int = 3) -> float:
-    """The size at which a mesher makes about so many cells: asked of smaller meshes."""
-    size = 0.1
-    for _ in range(3):
-        got = len(mesher(size)[1])
-        aim = min(cells, 30_000)
-        size *= (got / aim) ** (1.0 / power)
-    return size * (aim / cells) ** (1.0 / power)
-
-
-def row(mesher: Callable[[float], Arrays], size: float, repeats: int) -> Row:
-    """What a mesh of one size took and is."""
-    seconds, (points, cells) = timed(lambda: mesher(size), repeats)
-    found: Row = {
-        "mesher": mesher.__name__,
-        "cells": len(cells),
-        "seconds": seconds,
-        "cells_per_second": len(cells) / seconds,
-    }
-    if cells.shape[1] == 4:
-        angle = dihedrals(points, cells)
-        found |= {"min_dihedral": float(angle.min()), "max_dihedral": float(angle.max())}
-        found["mean_min_dihedral"] = float(angle.min(axis=1).mean())
-    else:
-        angle = angles(points, cells)
-        found |= {"min_angle": float(angle.min()), "mean_min_angle": float(angle.min(1).mean())}
-    return found
-
-
-def uniform() -> list[Row]:
-    """Box minus ball and bore, one size, 10⁵ and 10⁶ tetrahedra."""
-    rows = []
-    pace = dict.fromkeys(UNIFORM, np.inf)
-    for cells in (10**5, 10**6):
-        for mesher in UNIFORM:
-            if pace[mesher] < SLOW:
-                continue
-            found = row(mesher, sized(mesher, cells), 3 if mesher is peers.ours else 1)
-            pace[mesher] = found["cells_per_second"]
-            rows.append({"wanted": cells, **found})
-    return rows
-
-
-def graded() -> list[Row]:
-    """Edges 1 : 100 from the bore outwards, growing by 0.3."""
-    rows = []
-
-    def by_name(fine: float) -> Arrays:
-        size = {"bore": fine, "default": 100 * fine}
-        mesh = cm.generate(peers.solid(), cm.Octree(), size=size, deviation=peers.DEVIATION)
-        return mesh.points, mesh.cells["tetra"]
-
-    def gmsh_hxt(fine: float) -> Arrays:
-        return peers.gmsh_graded(fine, 100 * fine)
-
-    for fine in (0.01, 0.005):
-        for mesher in (by_name, gmsh_hxt):
-            rows.append({"fine": fine, **row(mesher, fine, 3 if mesher is by_name else 1)})
-    return rows
-
-
-def surface() -> list[Row]:
-    """The surface alone."""
-    rows = []
-    for cells in (10**4, 10**5):
-        for mesher in (peers.our_surface, peers.gmsh_surface):
-            rows.append({"wanted": cells, **row(mesher, sized(mesher, cells, 2), 3)})
-    return rows
-
-
-def hexahedra() -> list[Row]:
-    """All hexahedra, and a core of them."""
-    rows = []
-    for kind in ("hexahedron", "mixed"):
-        for size in (0.04, 0.02):
-            mesher = cm.Octree(cells=kind)
-            cm.generate(peers.solid(), mesher, size=0.1)
-            start = time.process_time()
-            mesh = cm.generate(peers.solid(), mesher, size=size)
-            seconds = time.process_time() - start
-            jacobian = cm.quality(mesh).scaled_jacobian
-            found = {"cells": kind, "size": size, "n_cells": mesh.n_cells, "seconds": seconds}
-            found["cells_per_second"] = mesh.n_cells / seconds
-            found["hexahedra"] = len(mesh.cells.get("hexahedron", ()))
-            found["min_scaled_jacobian"] = float(np.nanmin(jacobian))
-            found["mean_scaled_jacobian"] = float(np.nanmean(jacobian))
-            rows.append(found)
-    return rows
-
-
-def memory() -> list[Row]:
-    """Bytes that numpy allocates beyond the result."""
-    rows = []
-    for size in (0.045, 0.02):
-        cm.generate(peers.solid(), cm.Octree(), size=0.2)
-        tracemalloc.start()
-        mesh = cm.generate(peers.solid(), cm.Octree(), size=size, deviation=peers.DEVIATION)
-        held, peak = tracemalloc.get_traced_memory()
-        tracemalloc.stop()
-        rows.append({"cells": mesh.n_cells, "bytes_per_cell": (peak - held) / mesh.n_cells})
-    return rows
-
-
-def evaluation() -> list[Row]:
-    """Evaluation beside manifold3d's own boolean of the same facets."""
-    import manifold3d
-
-    rng = np.random.default_rng(3)
-    center = rng.random((100, 3)) * 4
-    radius = 0.3 + 0.2 * rng.random(100)
-    shape = cm.union(
-        [cm.Ball(tuple(c), float(r)) for c, r in zip(center.tolist(), radius, strict=True)]
-    )
-    cm.evaluate(cm.Ball((0, 0, 0), 1) | cm.Ball((0.5, 0, 0), 1))
-    rows = []
-    for deviation in (2e-3, 2e-4):
-        start = time.process_time()
-        plc = cm.evaluate(shape, deviation=deviation)
-        seconds = time.process_time() - start
-        # As many segments as our balls have for this deviation.
-        turns = [int(np.ceil(np.pi / np.arccos(1 - deviation / r))) for r in radius]
-        start = time.process_time()
-        balls = [
-            manifold3d.Manifold.sphere(float(r), n).translate(c.tolist())
-            for c, r, n in zip(center, radius, turns, strict=True)
-        ]
-        whole = manifold3d.Manifold.batch_boolean(balls, manifold3d.OpType.Add)
-        n_facets = whole.num_tri()
-        alone = time.process_time() - start
-        rows.append(
-            {
-                "leaves": 100,
-                "facets": plc.n_facets,
-                "seconds": seconds,
-                "manifold3d_facets": n_facets,
-                "manifold3d_seconds": alone,
-                "times": seconds / alone,
-            }
+def measure(function: str, arguments: list[Any], limit: float = LIMIT) -> Row:
+    """A row from a process of its own, or why there is none."""
+    here = Path(__file__).parent
+    command = [sys.executable, str(here / "space_calls.py"), function, json.dumps(arguments)]
+    environment = {**os.environ, **ONE_THREAD}
+    try:
+        out = subprocess.run(
+            command, env=environment, capture_output=True, text=True, timeout=limit, check=False
         )
-    return rows
+    except subprocess.TimeoutExpired:
+        return {"failed": f"stopped after {limit:g} s"}
+    if out.returncode:
+        lines = out.stderr.strip().splitlines() or [f"ended with status {out.returncode}"]
+        return {"failed": lines[-1][:200]}
+    return dict(json.loads(out.stdout.strip().splitlines()[-1]))
 
 
-SECTIONS = {s.__name__: s for s in (uniform, graded, surface, hexahedra, memory, evaluation)}
+def mesher(name: str, size: float, repeats: int) -> Row:
+    """What one mesher takes for an edge length."""
+    print(f"  {name}, {size:.4g}", flush=True)
+    return {"mesher": name, **measure("mesher", [name, size, repeats])}
+
+
+def bar(what: str, ours: float | None, theirs: float | None, least: float) -> Row:
+    """A bar of the form "so many times as fast": `ours` over `theirs`."""
+    if not ours or not theirs:
+        return {"bar": what, "least": least, "met": "not measured"}
+    factor = ours / theirs
+    return {
+        "bar": what,
+        "ours": ours,
+        "theirs": theirs,
+        "factor": factor,
+        "least": least,
+        "met": "yes" if factor >= least else "NO",
+    }
+
+
+def _pace(rows: Rows, name: str, wanted: int) -> float | None:
+    for row in rows:
+        if row["mesher"] == name and row["wanted"] == wanted:
+            return row.get("cells_per_second")
+    return None
+
+
+def uniform(share: float) -> tuple[Rows, Rows]:
+    """Box minus ball and bore, one size, 10⁵ and 10⁶ tetrahedra."""
+    rows: Rows = []
+    bars: Rows = []
+    for cells in (int(share * 10**5), int(share * 10**6)):
+        for name, density in UNIFORM.items():
+            size = (density / cells) ** (1 / 3)
+            repeats = 1 if name not in REPEATED else (5 if cells <= 10**5 else 3)
+            rows.append({"wanted": cells, **mesher(name, size, repeats)})
+        ours = _pace(rows, "ours", cells)
+        for name, least in (("gmsh_hxt", 3.0), ("tetgen", 10.0)):
+            what = f"tets/s, {cells:.0e} tets, over {name}'s"
+            bars.append(bar(what, ours, _pace(rows, name, cells), least))
+    return rows, bars
+
+
+def graded(share: float) -> tuple[Rows, Rows]:
+    """Edges 1 : 100 from the bore outwards, at like numbers of cells."""
+    rows: Rows = []
+    bars: Rows = []
+    for full, sizes in GRADED.items():
+        wanted = int(share * full)
+        for name, fine in sizes.items():
+            repeats = 3 if wanted <= 10**5 or name == "ours_graded" else 1
+            rows.append({"wanted": wanted, **mesher(name, fine / share**0.55, repeats)})
+        paces = [_pace(rows, name, wanted) for name in sizes]
+        bars.append(bar(f"tets/s, graded, about {wanted:.0e} tets", *paces, 2.0))
+    return rows, bars
+
+
+def surface(share: float) -> tuple[Rows, Rows]:
+    """The surface alone, 10⁴ and 10⁵ triangles."""
+    rows: Rows = []
+    bars: Rows = []
+    for cells in (int(share * 10**4), int(share * 10**5)):
+        for name, density in SURFACE.items():
+            rows.append({"wanted": cells, **mesher(name, (density / cells) ** 0.5, 5)})
+        paces = [_pace(rows, name, cells) for name in SURFACE]
+        bars.append(bar(f"triangles/s, {cells:.0e} triangles", *paces, 3.0))
+    return rows, bars
+
+
+def hexahedra(share: float) -> tuple[Rows, Rows]:
+    """Hexahedra alone, and with others around a core of them."""
+    rows: Rows = []
+    bars: Rows = []
+    for kind in ("hexahedron", "mixed"):
+        for size in (0.04, 0.025):
+            print(f"  {kind}, {size:g}", flush=True)
+            row = measure("hexahedra", [kind, size / share ** (1 / 3)])
+            rows.append({"kind": kind, **row})
+    fastest = max((r.get("cells_per_second", 0.0) for r in rows[:2]), default=0.0)
+    bars.append(bar("hexahedra/s over a million", fastest, 1e6, 1.0))
+    return rows, bars
+
+
+def memory(share: float) -> tuple[Rows, Rows]:
+    """Bytes that numpy allocates beyond the result, 10⁵ and 10⁶ tetrahedra."""
+    rows: Rows = []
+    bars: Rows = []
+    for cells in (int(share * 10**5), int(share * 10**6)):
+        row = measure("memory", [(UNIFORM["ours"] / cells) ** (1 / 3)])
+        rows.append(row)
+        bars.append(
+            bar(f"300 over bytes a tet, {cells:.0e}", 300.0, row.get("bytes_per_cell"), 1.0)
+        )
+    return rows, bars
+
+
+def evaluation(share: float) -> tuple[Rows, Rows]:
+    """Evaluation of 100 balls beside manifold3d's own boolean."""
+    rows: Rows = []
+    bars: Rows = []
+    for deviation in (2e-3 / share, 2e-4 / share):
+        row = measure("evaluation", [deviation])
+        rows.append({"deviation": deviation, **row})
+        theirs, ours = row.get("manifold3d_seconds"), row.get("seconds")
+        what = f"twice manifold3d's time over ours, deviation {deviation:g}"
+        bars.append(bar(what, 2.0 * theirs if theirs else None, ours, 1.0))
+    return rows, bars
+
+
+SECTIONS: dict[str, Callable[[float], tuple[Rows, Rows]]] = {
+    s.__name__: s for s in (uniform, graded, surface, hexahedra, memory, evaluation)
+}
+
+
+def keep(name: str, rows: Rows, bars: Rows) -> None:
+    """Put a section into results/space.json in place of what was there of it."""
+    path = RESULTS / "space.json"
+    found = json.loads(path.read_text()) if path.exists() else {}
+    found[name] = {"machine": machine(*PACKAGES), "rows": rows, "bars": bars}
+    RESULTS.mkdir(exist_ok=True)
+    path.write_text(json.dumps({s: found[s] for s in SECTIONS if s in found}, indent=1) + "\n")
 
 
 def main() -> None:
     """Run the sections named on the command line."""
-    wanted = sys.argv[1:] or list(SECTIONS)
+    flags = {word for word in sys.argv[1:] if word.startswith("--")}
+    wanted = [word for word in sys.argv[1:] if word not in flags] or list(SECTIONS)
     for name in wanted:
         if name not in SECTIONS:
             raise SystemExit(f"no section {name!r}; there are {', '.join(SECTIONS)}")
-    peers.solid()
+    if flags - {"--dry", "--small"}:
+        raise SystemExit("flags are --dry and --small")
     for name in wanted:
-        rows = SECTIONS[name]()
-        print(name)
+        print(name, flush=True)
+        rows, bars = SECTIONS[name](0.1 if "--small" in flags else 1.0)
         show(rows)
-        save(f"space_{name}", rows, *PACKAGES)
+        show(bars)
+        if not flags:
+            keep(name, rows, bars)
 
 
 if __name__ == "__main__":
