@@ -7,7 +7,7 @@
    equal (`touching`); so are facets that coincide with other leaves' facets.
 4. Equal facets become one, between two regions, with the names of all leaves there (`sheets`).
 5. Vertices move onto the exact surfaces around them (`projection`): facets approximate a surface,
-   but an edge between two surfaces must lie on both.
+   but an edge between two surfaces must lie on both. What that turns over is mended (`untangling`).
 """
 
 from __future__ import annotations
@@ -26,6 +26,7 @@ from csgmesh.boundary.projection import project_vertices
 from csgmesh.boundary.sheets import joined, with_rivals
 from csgmesh.boundary.sweeps import swept_domain
 from csgmesh.boundary.touching import Sheets, settle
+from csgmesh.boundary.untangling import untangled
 from csgmesh.csg import Embed
 from csgmesh.csg.primitives.half_space import HalfSpace
 from csgmesh.csg.program import Leaf, Program, compile_shape
@@ -72,10 +73,19 @@ def evaluate_solid(shape: Any, deviation: float | None, snap: float | None) -> P
         raise EmptyDomainError("the domain is empty: what is left has no thickness")
     report = _report(settled, stock, program, frame)
     table, marker = _markers(found.names, program.leaves)
-    points, triangles, surface, region, marker = canonical(
+    before, triangles, surface, region, marker = canonical(
         settled.points, found.triangles, found.surface, found.region, marker
     )
-    points, surfaces = project_vertices(points, triangles, surface, classes.surfaces)
+    points, surfaces = project_vertices(before, triangles, surface, classes.surfaces)
+    sides = np.column_stack([marker, region])
+    mended = untangled(before, points, triangles, surface, sides, surfaces)
+    if len(mended.parent) < len(triangles):
+        surface, region, marker = (a[mended.parent] for a in (surface, region, marker))
+        points, triangles, surface, region, marker = canonical(
+            mended.points, mended.triangles, surface, region, marker
+        )
+    else:
+        points, triangles = mended.points, mended.triangles
     used, number = np.unique(surface, return_inverse=True)
     exact = surfaces[used].transformed(frame.scale * np.eye(3), frame.centre)
     return Plc.build(
