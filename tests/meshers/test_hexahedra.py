@@ -80,6 +80,24 @@ def test_sharp_edges_are_kept() -> None:
     } < corners
 
 
+def test_two_materials_share_their_interface() -> None:
+    hard = cm.Ball((1, 1, 1), 0.6, name="ball")
+    regions = cm.Regions({"soft": cm.Box((0, 0, 0), (2, 2, 2)), "hard": hard})
+    mesh = hexahedral_mesh(cm.evaluate(regions), lambda points: np.full(len(points), 0.2))
+    assert cm.check(mesh, regions).ok
+    assert cm.quality(mesh).scaled_jacobian.min() >= 0.2
+    shared = mesh.interface("soft", "hard")["quad"]
+    assert len(shared) > 100
+    np.testing.assert_array_equal(shared, mesh.boundary("ball")["quad"])
+
+
+def test_cells_far_from_curved_faces_stay_cubes() -> None:
+    mesh = meshed(CUBE - cm.Ball((0, 0, 0), 0.3), 0.05)
+    far = (mesh.points[mesh.cells["hexahedron"]].mean(axis=1) ** 2).sum(axis=1) > 0.65**2
+    assert far.sum() > 4_000
+    np.testing.assert_allclose(cm.quality(mesh).scaled_jacobian[far], 1.0, atol=1e-12)
+
+
 def test_reentrant_edges_are_kept() -> None:
     shape, size = SHARP["boss"]
     mesh = meshed(shape, size)

@@ -128,9 +128,10 @@ class Surfaces:
         if len(bent):
             on = i[bent]
             q = self._canonical(on, out[bent])
-            q = np.where(
-                (kind[bent] == EXTRUDED)[:, None], self._on_prism(on, q), self._on_turn(on, q)
-            )
+            is_prism = kind[bent] == EXTRUDED
+            for own, put in ((is_prism, self._on_prism), (~is_prism, self._on_turn)):
+                if own.any():
+                    q[own] = put(on[own], q[own])
             out[bent] = np.einsum("kij,kj->ki", self.matrix[on], q) + self.offset[on]
         return out
 

@@ -129,6 +129,16 @@ _HOME = {
     "least_corners": "hexahedra.nearest",
     "relax": "hexahedra.relaxing",
     "least_determinant": "hexahedra.relaxing",
+    "measure_depths": "hexahedra.filling",
+    "spread_regions": "hexahedra.filling",
+    "clean_cells": "hexahedra.filling",
+    "list_sides": "hexahedra.filling",
+    "spread_levels": "hexahedra.filling",
+    "fill_deep": "hexahedra.filling",
+    "mark_unproved": "hexahedra.proving",
+    "list_stars": "hexahedra.averaging",
+    "average_in_cells": "hexahedra.averaging",
+    "average_along": "hexahedra.averaging",
 }
 
 #: Loading a module sets numba's cache directory for a while, which all threads share.

@@ -46,22 +46,24 @@ class Grid:
         """Number of cells along each axis."""
         return len(self.x) - 1, len(self.y) - 1, len(self.z) - 1
 
-    def centres(self) -> np.ndarray:
-        """Middles of all cells, (n, 3), z fastest."""
+    def middles(self, cells: np.ndarray) -> np.ndarray:
+        """Middles of cells given by their number in the padded grid, (k, 3)."""
+        at = np.unravel_index(cells, np.array(self.shape) + 2)
         middle = [0.5 * (line[1:] + line[:-1]) for line in self.axes]
-        return np.stack(np.meshgrid(*middle, indexing="ij"), axis=3).reshape(-1, 3)
-
-    def points(self) -> np.ndarray:
-        """All points, (n, 3), z fastest."""
-        return np.stack(np.meshgrid(*self.axes, indexing="ij"), axis=3).reshape(-1, 3)
+        return np.column_stack([m[i - 1] for m, i in zip(middle, at, strict=True)])
 
     def corners(self, cells: np.ndarray) -> np.ndarray:
-        """Points of cells given by number, (k, 8), as hexahedra."""
-        i, j, k = np.unravel_index(cells, self.shape)
+        """Points of the grid, z fastest, of cells given so, (k, 8), as hexahedra."""
+        i, j, k = (i - 1 for i in np.unravel_index(cells, np.array(self.shape) + 2))
         _, ny, nz = (len(line) for line in self.axes)
         first = (i * ny + j) * nz + k
         steps = [0, ny * nz, ny * nz + nz, nz]
         return np.stack([first + s for s in (*steps, *(s + 1 for s in steps))], axis=1)
+
+    def points(self, which: np.ndarray) -> np.ndarray:
+        """Places of points of the grid, (k, 3)."""
+        at = np.unravel_index(which, tuple(len(line) for line in self.axes))
+        return np.column_stack([line[i] for line, i in zip(self.axes, at, strict=True)])
 
 
 def _distinct(values: np.ndarray, near: float) -> np.ndarray:

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from csgmesh import kernels
 from csgmesh.measures.space.jacobians import least_jacobians
-from csgmesh.meshers.hexahedra.blocks import Blocks
+from csgmesh.meshers.hexahedra.blocks import Blocks, paired_edges
 from csgmesh.meshers.hexahedra.labels import unresolved
 from csgmesh.meshers.hexahedra.strata import Strata
 
@@ -18,11 +19,9 @@ def require_likeness(blocks: Blocks, strata: Strata, size: float) -> None:
     """Raise unless each curve and face of the domain is there in about its length and area."""
     pairs, wanted = strata.lengths()
     quads, points = blocks.quads, blocks.points
-    edge = np.stack([quads, np.roll(quads, -1, axis=1)], axis=2).reshape(-1, 2)
+    edge = np.column_stack([quads.ravel(), quads[:, [1, 2, 3, 0]].ravel()])
     label = np.repeat(blocks.label, 4)
-    low = np.sort(edge, axis=1)
-    order = np.lexsort((low[:, 1], low[:, 0]))
-    one, two = order[0::2], order[1::2]
+    one, two = paired_edges(quads)
     at = np.flatnonzero(label[one] != label[two])
     found = np.sort(np.column_stack([label[one[at]], label[two[at]]]), axis=1)
     ends = points[edge[one[at]]]
@@ -45,12 +44,20 @@ def require_likeness(blocks: Blocks, strata: Strata, size: float) -> None:
 
 def require_positive(blocks: Blocks) -> None:
     """Raise unless each Jacobian is positive all over its cell."""
-    least = least_jacobians(blocks.points, "hexahedron", blocks.hexes)
-    bad = np.flatnonzero(~(least > 0.0))
+    points, hexes = np.ascontiguousarray(blocks.points), np.ascontiguousarray(blocks.hexes)
+    unproved = np.zeros(len(hexes), bool)
+    start = 0
+    while start < len(hexes):
+        start = kernels.mark_unproved(points, hexes, unproved, np.zeros((3, 36)), start)
+    doubtful = np.flatnonzero(unproved)
+    if not len(doubtful):
+        return
+    least = least_jacobians(points, "hexahedron", hexes[doubtful])
+    bad = doubtful[~(least > 0.0)]
     if len(bad):
         raise unresolved(
             f"{len(bad)} hexahedra stay turned over, the first",
-            blocks.points[blocks.hexes[bad[0]]].mean(axis=0),
+            points[hexes[bad[0]]].mean(axis=0),
         )
 
 

@@ -10,14 +10,15 @@ from csgmesh.domain.plc import Plc
 from csgmesh.errors import BudgetError, MeshingError, SizeError
 from csgmesh.graphs import components
 from csgmesh.mesh import Mesh
-from csgmesh.meshers.hexahedra.blocks import Blocks, core_blocks, with_sheet
-from csgmesh.meshers.hexahedra.core import core_cells, require_manifold
+from csgmesh.meshers.hexahedra.blocks import Blocks, with_sheet
+from csgmesh.meshers.hexahedra.core import Core, core_of, require_manifold
 from csgmesh.meshers.hexahedra.grid import Grid
 from csgmesh.meshers.hexahedra.judging import lost_corners, require_likeness, require_positive
 from csgmesh.meshers.hexahedra.labels import labelled
-from csgmesh.meshers.hexahedra.placing import Relaxation, places_of, put, spread
-from csgmesh.meshers.hexahedra.strata import JOINED, Finder, Strata
-from csgmesh.meshers.hexahedra.strips import with_strips
+from csgmesh.meshers.hexahedra.placing import FREE, places_of, put, spread
+from csgmesh.meshers.hexahedra.relaxation import Relaxation
+from csgmesh.meshers.hexahedra.skin import Skin
+from csgmesh.meshers.hexahedra.strata import JOINED, Strata
 from csgmesh.meshers.workspace import Progress
 
 #: What is tried, in turn: cells this much smaller than asked for, and how deep the core's cells
@@ -39,14 +40,13 @@ def hexahedral_mesh(
 
     Cells of a grid inside the domain make the core. Its planes pass through the flat faces that
     are perpendicular to an axis, so these, and the edges between them, are met as they are. Along
-    each other face a sheet of cells is put in, and one along each reentrant edge of a flat face
-    perpendicular to an axis; vertices go to the exact corners, curves and
-    surfaces, and those near the boundary are relaxed.
+    each other face a sheet of cells is put in, between two materials one on either side; vertices
+    go to the exact corners, curves and surfaces. Those near the boundary are averaged, and relaxed
+    where cells stay bad. The cubes further inside cost no more than their numbers.
 
     Parameters
     ----------
     domain : Plc
-        Of one material.
     sizes : callable
         Wanted edge length at points (n, 3). The smallest one in the domain holds everywhere.
     max_points : int, default 10**7
@@ -62,8 +62,7 @@ def hexahedral_mesh(
     Raises
     ------
     MeshingError
-        If the domain is not resolved by cells of half the size, with the place; if it has several
-        materials.
+        If the domain is not resolved by cells of half the size, with the place.
     BudgetError
         If the mesh would have more than `max_points` points.
     SizeError
@@ -78,7 +77,8 @@ def hexahedral_mesh(
     ----------
     Sizes do not vary over the mesh. Where cells of the size asked for do not resolve the domain,
     smaller ones are tried, and ``info`` says so. A boundary that touches itself along an edge is
-    refused. Not resolved, at any size, are mostly edges with more than 150° inside the solid
+    refused, and so are interfaces that end on other faces. Not resolved, at any size, are mostly
+    edges with more than 150° inside the solid
     between two faces of which none is flat and perpendicular to an axis, such as where two pipes
     meet, and corners where several such edges end.
 
@@ -101,11 +101,6 @@ def hexahedral_mesh(
     >>> list(mesh.cells), bool(cm.quality(mesh).scaled_jacobian.min() > 0.5)
     (['hexahedron'], True)
     """
-    if len(domain.region_names) > 1:
-        raise MeshingError(
-            f"hexahedra are made of one material; the domain has {len(domain.region_names)}: "
-            + ", ".join(domain.region_names)
-        )
     strata = Strata.of(domain)
     asked = _smallest(domain, sizes)
     best: tuple[float, Mesh] | None = None
@@ -133,60 +128,76 @@ def hexahedral_mesh(
 
 def _attempt(strata: Strata, size: float, inset: float, max_points: int) -> tuple[float, Mesh]:
     """A mesh with cells of one size, and its smallest scaled Jacobian."""
-    grid = Grid.of(strata, size)
-    cells = core_cells(strata, grid, size, inset, max_points)
-    require_manifold(cells, grid)
-    points, hexes, (quads, ways) = core_blocks(cells, grid)
-    if not len(hexes):
+    core = core_of(strata, Grid.of(strata, size), size, inset, max_points)
+    require_manifold(core)
+    if not len(core.owner):
         low, high = strata.domain.bounds()
         x, y, z = 0.5 * (low + high)
         raise MeshingError(
             f"no cell of size {size:.6g} fits into the domain around ({x:.6g}, {y:.6g}, {z:.6g})"
         )
-    finder = Finder.of(strata, size, 2.5 * size, np.arange(len(strata.face)))
-    label = labelled(strata, finder, points, quads, ways, size)
-    blocks = Blocks(points, hexes, quads, label)
-    places_of(blocks, strata, size)
-    blocks = with_sheets(blocks, strata, ways)
-    if len(blocks.points) > max_points:
-        raise _over_budget(size, len(blocks.points), max_points)
+    label = labelled(strata, core, size)
+    groups = sheet_groups(strata, core, label)
+    moves = np.any(groups >= 0, axis=0)
+    skin = Skin.of(core, label, np.asarray(moves)[label])
+    places_of(skin.blocks, strata, size)
+    blocks = with_sheets(skin.blocks, groups)
+    over = len(blocks.points) + int(np.count_nonzero(core.cells)) - len(skin.blocks.hexes)
+    if over > max_points:
+        raise _over_budget(size, over, max_points)
     places = places_of(blocks, strata, size)
     points = blocks.points.copy()
-    put(points, places, strata, first=True)
+    points[places.at_corner] = strata.corners[places.corner]
+    put(points, places, strata, np.flatnonzero(places.kind != FREE), first=True)
     loose = np.zeros(len(points), bool)
-    loose[blocks.hexes[len(hexes) :].ravel()] = True
+    loose[blocks.hexes[len(skin.blocks.hexes) :].ravel()] = True
     spread(points, blocks, places, strata, loose)
-    relaxation = Relaxation.of(points, blocks, places, strata, size, loose)
+    held = np.zeros(len(points), bool)
+    held[: len(skin.held)] = skin.held
+    relaxation = Relaxation.of(points, blocks, places, strata, size, held)
     relaxation.run()
-    blocks = Blocks(points, blocks.hexes, blocks.quads, blocks.label)
+    blocks = blocks.with_points(points)
     require_positive(blocks)
     require_likeness(blocks, strata, size)
-    worst = relaxation.worst()
+    worst = float(relaxation.quality.min(initial=1.0))
     info = {
         "method": "hexahedra",
         "size": size,
         "scaled_jacobian": worst,
         "lost_corners": lost_corners(places.corner, strata),
     }
-    return worst, _mesh(strata, blocks, size, info)
+    return worst, _mesh(strata, skin, blocks, size, info)
 
 
-def with_sheets(blocks: Blocks, strata: Strata, ways: np.ndarray) -> Blocks:
-    """A sheet of cells along each face that is not flat in the grid.
+def sheet_groups(strata: Strata, core: Core, label: np.ndarray) -> np.ndarray:
+    """Which sheet lies behind and in front of each face, -1 for none, (2, f).
 
-    Faces that meet smoothly, or at an edge that the solid surrounds, share one.
+    Each face that is not flat in the grid gets one; faces that meet smoothly, or at an edge that
+    the solid surrounds, share it.
     """
     n = strata.n_faces
-    joined = strata.turn > JOINED
-    _, group = components(n, strata.pair[joined, 0], strata.pair[joined, 1])
-    way = 2 * ways[:, 0] + ways[:, 1]
     low, high = np.full(n, 6), np.full(n, -1)
-    np.minimum.at(low, blocks.label, way)
-    np.maximum.at(high, blocks.label, way)
+    np.minimum.at(low, label, core.way)
+    np.maximum.at(high, label, core.way)
     bent = (low < high) | (strata.face_axis < 0)
-    blocks = with_strips(blocks, strata, bent)
-    for g in np.unique(group[bent]).tolist():
-        blocks = with_sheet(blocks, group[blocks.label] == g)
+    out = np.full((2, n), -1)
+    for side, turn in enumerate((strata.turn, 360.0 - strata.turn)):
+        joined = turn > JOINED
+        _, group = components(n, strata.pair[joined, 0], strata.pair[joined, 1])
+        moves = np.zeros(n, bool)
+        moves[group[bent]] = True
+        own = moves[group]
+        if side:
+            own &= (strata.face_regions >= 0).all(axis=1)
+        out[side, own] = group[own]
+    return out
+
+
+def with_sheets(blocks: Blocks, groups: np.ndarray) -> Blocks:
+    """A sheet of cells along each group of sides of a core, on one side or on both."""
+    for side, group in enumerate(groups):
+        for g in np.unique(group[group >= 0]).tolist():
+            blocks = with_sheet(blocks, group[blocks.label] == g, in_front=side == 1)
     return blocks
 
 
@@ -209,17 +220,22 @@ def _over_budget(size: float, n: int, max_points: int) -> BudgetError:
     )
 
 
-def _mesh(strata: Strata, blocks: Blocks, size: float, info: dict[str, object]) -> Mesh:
+def _mesh(strata: Strata, skin: Skin, blocks: Blocks, size: float, info: dict[str, object]) -> Mesh:
     domain = strata.domain
+    points, hexes, region = skin.joined(blocks)
     middle = strata.on_faces(blocks.label, blocks.points[blocks.quads].mean(axis=1))
+    sides = np.column_stack([blocks.behind, blocks.front])
+    for array in (points, hexes, region):
+        array.flags.writeable = False
     return Mesh(
-        blocks.points,
-        {"hexahedron": blocks.hexes},
-        region_names=domain.region_names,
-        facets={"quad": blocks.quads},
-        facet_marker={"quad": strata.markers(blocks.label, middle, size)},
-        boundary_names=domain.boundary_names,
-        facet_region={"quad": np.tile([0, -1], (len(blocks.quads), 1))},
+        points,
+        {"hexahedron": hexes},
+        {"hexahedron": region},
+        domain.region_names,
+        {"quad": blocks.quads},
+        {"quad": strata.markers(blocks.label, middle, size)},
+        domain.boundary_names,
+        {"quad": sides},
         domain=domain,  # type: ignore[arg-type]
         info=info,
     )

@@ -37,6 +37,8 @@ class Strata:
     face_surface, face_sign : (f,) int64
         Faces are told apart by their surfaces, not by names. The sign is -1 where the solid lies
         in front of the surface, as in a bore.
+    face_regions : (f, 2) int64
+        Regions behind and in front of each face, -1 outside.
     face_axis, face_place : (f,) int64, (f,) float64
         Axis that a flat face is perpendicular to, and where it meets it; -1 for others.
     segments : (k, 2, 3) float64
@@ -54,6 +56,7 @@ class Strata:
     face: np.ndarray
     face_surface: np.ndarray
     face_sign: np.ndarray
+    face_regions: np.ndarray
     face_axis: np.ndarray
     face_place: np.ndarray
     segments: np.ndarray
@@ -64,9 +67,9 @@ class Strata:
 
     @classmethod
     def of(cls, domain: Plc) -> Strata:
-        """The strata of a domain of one material."""
+        """The strata of a domain."""
         sign = _signs(domain)
-        key = np.column_stack([domain.facet_surface, sign])
+        key = np.column_stack([domain.facet_surface, sign, domain.facet_region])
         table, face = np.unique(key, axis=0, return_inverse=True)
         face = face.reshape(-1)
         axis, place = _flat_faces(domain, face, len(table))
@@ -77,6 +80,7 @@ class Strata:
             face,
             table[:, 0],
             table[:, 1],
+            table[:, 2:],
             axis,
             place,
             domain.points[edges],

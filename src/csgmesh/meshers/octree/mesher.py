@@ -75,7 +75,8 @@ class Octree:
 
     Exceptions
     ----------
-    Hexahedra are of one material, and chords of curved faces as long as the size. Solids they do
+    Chords of curved faces of hexahedra are as long as the size, and their materials may meet along
+    closed interfaces only. Solids they do
     not resolve even at half the size are refused with the place: mostly reentrant edges between two
     faces of which none is flat and perpendicular to an axis, as where two pipes meet.
     There is no bound on dihedral angles at the surface and where leaves of different sizes meet:
