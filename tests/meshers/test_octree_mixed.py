@@ -76,6 +76,14 @@ def test_materials_keep_their_cells_where_sizes_vary():
     assert ((radius < 0.7).all(axis=1) == (materials == 1)).all()
 
 
+def test_one_size_stays_one_where_the_boundary_needs_a_little_less():
+    core = cm.Ball((1, 1, 1), 0.6)
+    mesh = cm.generate(cm.Regions({"soft": BOX, "hard": core}), MIXED, size=0.12)
+    assert shares(mesh)["hexahedron"] > 0.4
+    sides = np.ptp(mesh.points[mesh.cells["hexahedron"]], axis=1)
+    assert 0.5 * 0.12 < sides.min() <= sides.max() < sides.min() + 1e-12
+
+
 def test_solids_without_room_for_a_hexahedron_are_tetrahedra():
     bar = cm.Box((0, 0, 0), (1, 0.2, 0.2))
     mesh = cm.generate(bar, MIXED, size=0.2)

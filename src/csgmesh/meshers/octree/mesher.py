@@ -9,7 +9,7 @@ import numpy as np
 
 from csgmesh.domain.plc import Plc
 from csgmesh.domain.surface_mesh import SurfaceMesh
-from csgmesh.errors import MeshingError
+from csgmesh.errors import BudgetError, MeshingError
 from csgmesh.improve.tetrahedra import improve_tetrahedra
 from csgmesh.mesh import Mesh
 from csgmesh.meshers.hexahedra import hexahedral_mesh
@@ -21,7 +21,7 @@ from csgmesh.meshers.tetrahedra import Tetrahedra, tetrahedralize
 from csgmesh.meshers.workspace import Progress
 from csgmesh.options import check_choice, check_flag, check_growth, check_whole
 from csgmesh.size.field import Source
-from csgmesh.size.resolve import resolve
+from csgmesh.size.resolve import ResolvedSize, resolve
 
 CELLS = ("tetra", "hexahedron", "mixed")
 #: Times that sizes are made smaller where triangles of the surface are no faces of tetrahedra.
@@ -29,6 +29,9 @@ ROUNDS = 5
 #: By so much, each time.
 SMALLER = 0.5
 STAGES = 4
+#: Sizes for mixed cells that vary by no more than this are made even: cells of one size are
+#: hexahedra, of which there are a twelfth as many as of tetrahedra.
+EVEN = 0.5
 
 
 @dataclass(frozen=True)
@@ -47,9 +50,8 @@ class Octree:
     cells : {"tetra", "hexahedron", "mixed"}
         What to make. ``"mixed"`` makes hexahedra of the lattice's cubes, one or two layers of them
         away from the surface, pyramids around these, and tetrahedra for the rest. Hexahedra alone
-        come from a grid whose planes fit the flat faces, with sheets of
-        cells along the others; the smallest size holds everywhere, and `gradation` and `improve`
-        do not matter.
+        come from a grid whose planes fit the flat faces, with sheets of cells along the others;
+        the smallest size holds everywhere, and `gradation` and `improve` do not matter.
     gradation : float, default 0.3
         Bound on the growth of sizes per unit of length.
     improve : bool, default True
@@ -154,15 +156,17 @@ class Octree:
             return hexahedral_mesh(domain, sizes, max_points=self.max_points, progress=progress)
         filled, surface, grid = self._tetrahedra(domain, size, progress)
         info: dict[str, object] = {"method": "Octree", "options": dict(vars(self))}
-        if self.cells == "mixed":
-            return mixed_mesh(filled, surface, grid, info)
-        return tetra_mesh(filled, surface, info)
+        if grid is None:
+            return tetra_mesh(filled, surface, info)
+        return mixed_mesh(filled, surface, grid, info)
 
     def _tetrahedra(
         self, domain: Plc, size: Any, progress: Progress | None
-    ) -> tuple[Tetrahedra, SurfaceMesh, Lattice]:
+    ) -> tuple[Tetrahedra, SurfaceMesh, Lattice | None]:
         told = progress or _silent
         sizes = SpaceSizes.of(domain, size, self.gradation, self.max_points)
+        if self.cells == "mixed":
+            sizes = _even(sizes, resolve(size, domain), self.max_points)  # type: ignore[arg-type]
         for _ in range(ROUNDS):
             told("surface", 0, STAGES)
             surface = surface_mesh(domain, sizes, max_points=self.max_points, progress=progress)
@@ -179,6 +183,9 @@ class Octree:
                 f"the surface at ({x:.6g}, {y:.6g}, {z:.6g}) cannot be filled with tetrahedra, "
                 f"however fine: {len(filled.missing)} triangles are missing after {ROUNDS} rounds"
             )
+        # What is needed no more goes before memory is asked for.
+        left = grid if self.cells == "mixed" else None
+        del grid
         told("improve", 3, STAGES)
         if self.improve:
             better = improve_tetrahedra(
@@ -199,7 +206,19 @@ class Octree:
                 face=better[4],
             )
         told("improve", STAGES, STAGES)
-        return filled, surface, grid
+        return filled, surface, left
+
+
+def _even(sizes: SpaceSizes, asked: ResolvedSize | None, max_points: int) -> SpaceSizes:
+    """What the boundary needs everywhere, where that is not much smaller than the one size."""
+    least = sizes.given.least
+    varies = sizes.wanted is not None or (asked is not None and asked.boundary)
+    if varies or sizes.uniform is not None or least < EVEN * sizes.largest:
+        return sizes
+    try:
+        return SpaceSizes.of(sizes.domain, least, sizes.gradation, max_points)
+    except BudgetError:
+        return sizes
 
 
 def even_sizes(domain: Plc, size: Any, gradation: float, max_points: int) -> Source:
