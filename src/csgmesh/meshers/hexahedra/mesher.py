@@ -15,6 +15,7 @@ from csgmesh.meshers.hexahedra.core import Core, core_of, require_manifold
 from csgmesh.meshers.hexahedra.grid import Grid
 from csgmesh.meshers.hexahedra.judging import lost_corners, require_likeness, require_positive
 from csgmesh.meshers.hexahedra.labels import labelled
+from csgmesh.meshers.hexahedra.patches import stepped_faces, with_pillow
 from csgmesh.meshers.hexahedra.placing import FREE, places_of, put, spread
 from csgmesh.meshers.hexahedra.relaxation import Relaxation
 from csgmesh.meshers.hexahedra.skin import Skin
@@ -40,9 +41,10 @@ def hexahedral_mesh(
 
     Cells of a grid inside the domain make the core. Its planes pass through the flat faces that
     are perpendicular to an axis, so these, and the edges between them, are met as they are. Along
-    each other face a sheet of cells is put in, between two materials one on either side; vertices
-    go to the exact corners, curves and surfaces. Those near the boundary are averaged, and relaxed
-    where cells stay bad. The cubes further inside cost no more than their numbers.
+    each other face a sheet of cells is put in, between two materials one on either side. Faces that
+    meet at a reentrant edge share a sheet, and rows of cells along such edges keep them straight.
+    Vertices go to the exact corners, curves and surfaces. Those near the boundary are averaged, and
+    relaxed where cells stay bad. The cubes further inside cost no more than their numbers.
 
     Parameters
     ----------
@@ -77,10 +79,8 @@ def hexahedral_mesh(
     ----------
     Sizes do not vary over the mesh. Where cells of the size asked for do not resolve the domain,
     smaller ones are tried, and ``info`` says so. A boundary that touches itself along an edge is
-    refused, and so are interfaces that end on other faces. Not resolved, at any size, are mostly
-    edges with more than 150° inside the solid
-    between two faces of which none is flat and perpendicular to an axis, such as where two pipes
-    meet, and corners where several such edges end.
+    refused, and so are interfaces that end on other faces. Not resolved may be corners where
+    several edges end of which some are reentrant.
 
     Termination
     -----------
@@ -194,10 +194,17 @@ def sheet_groups(strata: Strata, core: Core, label: np.ndarray) -> np.ndarray:
 
 
 def with_sheets(blocks: Blocks, groups: np.ndarray) -> Blocks:
-    """A sheet of cells along each group of sides of a core, on one side or on both."""
+    """A sheet of cells along each group of faces, on one side or on both, with rows on curves."""
     for side, group in enumerate(groups):
         for g in np.unique(group[group >= 0]).tolist():
-            blocks = with_sheet(blocks, group[blocks.label] == g, in_front=side == 1)
+            chosen = group[blocks.label] == g
+            outer, first = np.flatnonzero(chosen), len(blocks.hexes)
+            stepped = stepped_faces(blocks, chosen)
+            blocks = with_sheet(blocks, chosen, in_front=side == 1)
+            for face in stepped.tolist():
+                own = np.flatnonzero(blocks.label[outer] == face)
+                if (blocks.front[outer[own]] < 0).all():
+                    blocks = with_pillow(blocks, first + own, outer[own])
     return blocks
 
 

@@ -78,9 +78,8 @@ class Octree:
     Exceptions
     ----------
     Chords of curved faces of hexahedra are as long as the size, and their materials may meet along
-    closed interfaces only. Solids they do
-    not resolve even at half the size are refused with the place: mostly reentrant edges between two
-    faces of which none is flat and perpendicular to an axis, as where two pipes meet.
+    closed interfaces only. Solids they do not resolve even at half the size are refused with the
+    place.
     There is no bound on dihedral angles at the surface and where leaves of different sizes meet:
     they are measured (see `csgmesh.quality`), not proved. Walls and gaps much thinner than the
     size are crossed by one flat layer of cells. A leaf is half or twice its neighbour, so that
