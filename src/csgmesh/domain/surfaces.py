@@ -137,12 +137,18 @@ class Surfaces:
 
     def normals(self, i: np.ndarray, points: np.ndarray) -> np.ndarray:
         """Outward unit normals of surfaces `i` (k,) at points near them, (k, 3)."""
+        out = self.plane_normals[i]
+        bent = np.flatnonzero(self.kind[i] != PLANE)
+        if len(bent):
+            out[bent] = self._bent_normals(i[bent], np.asarray(points, float)[bent])
+        return out
+
+    def _bent_normals(self, i: np.ndarray, points: np.ndarray) -> np.ndarray:
         kind = self.kind[i]
-        q = self._canonical(i, np.asarray(points, float))
-        canonical = np.tile([0.0, 0.0, 1.0], (len(i), 1))
+        q = self._canonical(i, points)
+        canonical = np.zeros((len(i), 3))
         at = np.flatnonzero(kind == EXTRUDED)
-        across = self._outward(i[at], q[at, :2])
-        canonical[at] = np.column_stack([across, np.zeros(len(at))])
+        canonical[at, :2] = self._outward(i[at], q[at, :2])
         at = np.flatnonzero(kind == REVOLVED)
         radius = np.hypot(q[at, 0], q[at, 1])
         across = self._outward(i[at], np.column_stack([radius, q[at, 2]]))
@@ -151,7 +157,7 @@ class Surfaces:
         canonical[at] = np.column_stack([across[:, :1] * spoke, across[:, 1]])
         out = np.einsum("kji,kj->ki", self.inverse[i], canonical)
         length = np.sqrt((out**2).sum(axis=1))
-        return out / np.where(length > 0.0, length, 1.0)[:, None]
+        return np.asarray(out / np.where(length > 0.0, length, 1.0)[:, None])
 
     def parameters(self, i: np.ndarray, points: np.ndarray) -> np.ndarray:
         """Parameters on the profiles of curved surfaces `i` (k,) nearest to points near them."""

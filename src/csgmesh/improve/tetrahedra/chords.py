@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from csgmesh.domain.surface_mesh import SurfaceMesh
+from csgmesh.domain.surfaces import PLANE
 
 #: Triangles keep this cosine to the exact normals at their corners: 60 degrees.
 UPRIGHT = 0.5
@@ -33,23 +34,23 @@ class Chords:
         self.triangles = triangles
         self.face = face
         self.surface = surface
-        self.normals = self._exact_normals(triangles, face, surface.points)
+        surfaces = surface.plc.surfaces
+        on = surface.face_surface[face]
+        self.normals = np.repeat(surfaces.plane_normals[on][:, None], 3, axis=1)
         self.limit = np.full(len(surface.face_surface), surface.plc.deviation)
-        ahead = triangles[:, [1, 2, 0]]
-        heights = _heights(
-            surface.points[triangles],
-            surface.points[ahead],
-            self.normals,
-            self.normals[:, [1, 2, 0]],
-        )
-        np.maximum.at(self.limit, face, heights.max(axis=1, initial=0.0))
+        bent = np.flatnonzero(surfaces.kind[on] != PLANE)
+        if len(bent):
+            self.normals[bent] = own = self._exact_normals(triangles[bent], on[bent])
+            start, end = triangles[bent], triangles[bent][:, [1, 2, 0]]
+            points = surface.points
+            heights = _heights(points[start], points[end], own, own[:, [1, 2, 0]])
+            np.maximum.at(self.limit, face[bent], heights.max(axis=1))
 
-    def _exact_normals(
-        self, triangles: np.ndarray, face: np.ndarray, points: np.ndarray
-    ) -> np.ndarray:
-        on = np.repeat(self.surface.face_surface[face], 3)
+    def _exact_normals(self, triangles: np.ndarray, on: np.ndarray) -> np.ndarray:
+        """Normals at the corners of triangles (m, 3) of surfaces `on` (m,), each found once."""
+        points = self.surface.points
         n = max(len(points), 1)
-        keys, where = np.unique(on * n + triangles.ravel(), return_inverse=True)
+        keys, where = np.unique(np.repeat(on, 3) * n + triangles.ravel(), return_inverse=True)
         normals = self.surface.plc.surfaces.normals(keys // n, points[keys % n])
         return np.asarray(normals[where].reshape(-1, 3, 3))
 

@@ -144,7 +144,7 @@ def improve_tetrahedra(
     for number in range(passes):
         if not (scores <= bars[0]).any():
             break
-        piece = Piece(points, tets, region, scores, chords, bars)
+        piece = Piece(points, tets, region, scores, chords, number > 0, bars)
         done = piece.work(ROUNDS, number >= FAST_PASSES, progress)
         points, tets, region, scores = piece.put_back(points, tets, region, scores)
         if not done and number >= FAST_PASSES:

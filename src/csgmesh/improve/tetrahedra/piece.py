@@ -36,6 +36,9 @@ class Piece:
         Shapes of the tetrahedra.
     chords : Chords
         The surface; its triangles change with the work.
+    wide : bool
+        Whether to take two layers of cells around the bad ones, so that cells which come of their
+        treatment can be treated, too; else one.
     bars : (3,) float64
         Shape that cells are treated to reach, shape where a vertex may stop moving, and shape below
         which vertices may come and go.
@@ -48,11 +51,12 @@ class Piece:
         region: np.ndarray,
         scores: np.ndarray,
         chords: Chords,
+        wide: bool,
         bars: np.ndarray,
     ) -> None:
         mark = np.zeros(len(points), np.int8)
         chosen = np.zeros(len(tets), np.int8)
-        kernels.choose_cells(tets.reshape(-1), scores, bars[0], mark, chosen)
+        kernels.choose_cells(tets.reshape(-1), scores, bars[0], int(wide), mark, chosen)
         self.chords = chords
         self.chosen = chosen != 0
         self.vertices = np.flatnonzero(mark)

@@ -34,7 +34,7 @@ def smooth_tetrahedra(mesh: Mesh, method: str, sweeps: int, progress: Progress |
     else:
         chords = Chords(triangles, face, surface)
         scores = shapes(points, tets)
-        piece = Piece(points, tets, region, scores, chords, np.full(3, _ALL))
+        piece = Piece(points, tets, region, scores, chords, True, np.full(3, _ALL))
         _sweep(piece, surface, method == "odt", sweeps, progress)
         points = piece.put_back(points, tets, region, scores)[0]
     facets = {"triangle": order[triangles]} if "triangle" in mesh.facets else {}

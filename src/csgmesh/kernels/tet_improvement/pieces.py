@@ -48,11 +48,11 @@ def spread(corner, chosen, mark, n, inner, outer):
 
 
 @njit(**ENTRY)
-def choose_cells(cells, scores, goal, marks, choices):
-    """Choose the cells around those below the goal.
+def choose_cells(cells, scores, goal, wide, marks, choices):
+    """Choose the cells around those below the goal; if `wide`, those around these, too.
 
-    Marks vertices of bad cells 1, their neighbours 2, and 3 those of chosen cells some of whose
-    cells are not chosen.
+    Marks vertices of bad cells 1, their neighbours 2 if wide, and 3 those of chosen cells some of
+    whose cells are not chosen.
     """
     corner = pointer(cells)
     score = pointer(scores)
@@ -63,8 +63,11 @@ def choose_cells(cells, scores, goal, marks, choices):
         if score[t] <= goal:
             for i in range(4 * t, 4 * t + 4):
                 mark[corner[i]] = 1
-    spread(corner, chosen, mark, n, 1, 2)
-    spread(corner, chosen, mark, n, 2, 3)
+    if wide != 0:
+        spread(corner, chosen, mark, n, 1, 2)
+        spread(corner, chosen, mark, n, 2, 3)
+    else:
+        spread(corner, chosen, mark, n, 1, 3)
 
 
 @njit(**HELPER)

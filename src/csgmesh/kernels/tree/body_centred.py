@@ -110,21 +110,23 @@ def side_of_edge(tri, o, p, q, x, y, tail_first):
 
 
 @njit(**ENTRY)
-def wind_around(triangles, number, begin, end, points, out):
+def wind_around(triangles, number, first, last, begin, end, points, out):
     """Add to the winding numbers of a closed surface around points, by rays upwards.
 
     triangles: (m, 9) coordinates; number: (m, 3) points, so that both triangles of an edge see it
-    from the same end.
+    from the same end. first, last: those that may lie above a point are among first to last.
     """
     tri = pointer(triangles)
     name = pointer(number)
     xyz = pointer(points)
     turns = pointer(out)
+    start = pointer(first)
+    stop = pointer(last)
     for i in range(begin, end):
         x = xyz[3 * i]
         y = xyz[3 * i + 1]
         z = xyz[3 * i + 2]
-        for t in range(triangles.shape[0] // 9):
+        for t in range(start[i], stop[i]):
             o = 9 * t
             if tri[o] < x and tri[o + 3] < x and tri[o + 6] < x:
                 continue

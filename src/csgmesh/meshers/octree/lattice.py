@@ -190,15 +190,36 @@ def _inside(
     places = np.concatenate(
         [lo + 0.5 * extent, tree.lo + corner[leads[len(leaves) :] - tree.n_leaves] * tree.unit[3:]]
     )
-    outer = (surface.region < 0).any(axis=1)
-    number = surface.triangles if outer.all() else surface.triangles[outer]
-    shape = shape if outer.all() else np.ascontiguousarray(surface.points[number]).reshape(-1)
+    is_in = np.zeros(len(parent), bool)
+    is_in[leads] = _turns(surface, shape, places) != 0
+    return (far & is_in[parent]).astype(np.uint8)
+
+
+def _turns(surface: SurfaceMesh, shape: np.ndarray, places: np.ndarray) -> np.ndarray:
+    """How often the outer surface winds around places (k, 3), (k,) int64."""
+    region = surface.region
+    outer = np.flatnonzero((region[:, 0] < 0) | (region[:, 1] < 0))
+    a, b, c = shape.reshape(-1, 9)[outer, ::3].T
+    low, high = np.minimum(np.minimum(a, b), c), np.maximum(np.maximum(a, b), c)
+    width = (high - low).max(initial=0.0)
+    order = np.argsort(low, kind="stable")
+    outer, low = outer[order], low[order]
+    shape, number = shape.reshape(-1, 9)[outer].reshape(-1), surface.triangles[outer].reshape(-1)
+    # Triangles above or below a place begin no further left of it than the widest is wide.
+    first = np.searchsorted(low, places[:, 0] - 1.01 * width)
+    last = np.searchsorted(low, places[:, 0], "right")
     turns = np.zeros(len(places), np.int64)
-    at_once = max(10**8 // max(len(number), 1), 1)
-    flat = np.ascontiguousarray(number).reshape(-1)
+    at_once = max(10**8 // max(len(outer), 1), 1)
     for begin in range(0, len(places), at_once):
         end = min(begin + at_once, len(places))
-        kernels.wind_around(shape, flat, begin, end, places.reshape(-1), turns)
-    is_in = np.zeros(len(parent), bool)
-    is_in[leads] = turns != 0
-    return (far & is_in[parent]).astype(np.uint8)
+        kernels.wind_around(
+            shape,
+            number,
+            first,
+            last,
+            begin,
+            end,
+            places.reshape(-1),
+            turns,
+        )
+    return turns

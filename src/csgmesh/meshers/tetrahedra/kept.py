@@ -49,13 +49,17 @@ class Kept:
             rims[tets[:, 0]] + rims[tets[:, 1]] + rims[tets[:, 2]] + rims[tets[:, 3]] >= 3
         )
         sides = tets[near][:, [[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]]].reshape(-1, 3)
-        on_rim = np.flatnonzero(is_rim[sides].all(axis=1))
+        on_rim = np.flatnonzero(rims[sides[:, 0]] & rims[sides[:, 1]] & rims[sides[:, 2]])
         sides, owner = sides[on_rim], near[on_rim // 4]
-        row = np.sort(sides, axis=1)
-        order = np.lexsort(row.T)
-        row = row[order]
-        differs = np.ones(len(row) + 1, bool)
-        differs[1:-1] = (row[1:] != row[:-1]).any(axis=1)
+        # Numbers of points have 26 bits: the two larger ones of a side are one key, and sides with
+        # the same two lie together, whatever the third.
+        a, b, c = sides.T
+        low, high = np.minimum(np.minimum(a, b), c), np.maximum(np.maximum(a, b), c)
+        middle = a + b + c - low - high
+        order = np.lexsort([low, high << 32 | middle])
+        key, low = (high << 32 | middle)[order], low[order]
+        differs = np.ones(len(key) + 1, bool)
+        differs[1:-1] = (key[1:] != key[:-1]) | (low[1:] != low[:-1])
         single = order[differs[1:] & differs[:-1]]
         return cls(tets, is_rim, sides[single], owner[single])
 
