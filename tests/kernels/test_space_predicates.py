@@ -91,6 +91,20 @@ def of_many_magnitudes(rng: np.random.Generator) -> np.ndarray:
     return rng.choice([-1.0, 1.0], (5, 3)) * 2.0 ** rng.integers(-40, 40, (5, 3))
 
 
+def almost_in_a_plane(rng: np.random.Generator) -> np.ndarray:
+    """Volumes of a few units, 2^-104 of the products that make them up."""
+    u, v = ([int(c) for c in rng.integers(2**25, 2**26, 3)] for _ in range(2))
+    n = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]]
+    # Bézout's numbers: the plane through e parallel to u and v is the next one.
+    (r, x, y), (s, z, w) = (n[0], 1, 0), (n[1], 0, 1)
+    while s:
+        q = r // s
+        (r, x, y), (s, z, w) = (s, z, w), (r - q * s, x - q * z, y - q * w)
+    far = [a + b for a, b in zip(u, v, strict=True)]
+    four = np.array([[0, 0, 0], u, v, [x + far[0], y + far[1], far[2]]], float)
+    return np.vstack([rng.permutation(four + rng.integers(0, 2**20, 3)), rng.random(3)])
+
+
 @pytest.mark.parametrize(
     "family",
     [
@@ -104,6 +118,7 @@ def of_many_magnitudes(rng: np.random.Generator) -> np.ndarray:
         an_ulp_apart,
         on_corners_of_a_box,
         in_a_plane,
+        almost_in_a_plane,
         on_a_circle_of_a_lattice,
         far_from_the_origin,
         of_many_magnitudes,

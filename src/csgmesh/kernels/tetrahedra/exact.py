@@ -183,7 +183,8 @@ def orient3d_adaptive(ax, ay, az, bx, by, bz, cx, cy, cz, dx, dy, dz):
         return 0.0
     h = scratch(96)
     spare = scratch(96)
-    n = exact_volume(x, y, z, 3, 0, 1, 2, h, spare)
+    # The determinant of rows that end in 1 is positive where a stands behind b: one swap away.
+    n = exact_volume(x, y, z, 0, 3, 1, 2, h, spare)
     return h[n - 1] if n > 0 else 0.0
 
 
