@@ -1,4 +1,4 @@
-"""A block with a cavity and a bore: tetrahedra and hexahedra of the same solid."""
+"""A block with a cavity and a bore: tetrahedra, hexahedra and both of the same solid."""
 
 import csgmesh as cm
 
@@ -18,7 +18,12 @@ assert cm.check(hexahedra, shape).ok
 print(hexahedra)
 print("smallest scaled Jacobian", round(float(cm.quality(hexahedra).scaled_jacobian.min()), 2))
 
+mixed = cm.generate(shape, cm.Octree(cells="mixed"), size=0.06)
+assert cm.check(mixed, shape).ok
+print(mixed)
+
 cm.write("block.msh", tetrahedra)
 half = ((1, 0.5, 0.5), (0, -1, 0))
 cm.draw(tetrahedra, "block.png", cut=half)
 cm.draw(hexahedra, "block_hexahedra.png", cut=half)
+cm.draw(mixed, "block_mixed.png", cut=half)

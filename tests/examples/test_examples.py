@@ -82,6 +82,7 @@ def test_block(run):
     assert float(re.search(r"smallest scaled Jacobian ([\d.]+)", printed).group(1)) >= 0.2
     check_picture(folder / "block.png")
     check_picture(folder / "block_hexahedra.png")
+    check_picture(folder / "block_mixed.png")
     mesh = cm.read(folder / "block.msh")
     cavity = mesh.points[mesh.boundary_points("cavity")] - (0.6, 0.5, 0.5)
     np.testing.assert_allclose(np.linalg.norm(cavity, axis=1), 0.3, atol=1e-12)
@@ -258,6 +259,15 @@ def test_openscad(run):
     assert volume == pytest.approx(plate + 24 * 24 * 16 - np.pi * 32 * 24 - pocket, rel=1e-3)
     assert bore == pytest.approx(np.pi * 8 * 24, rel=2e-3)  # in chords 0.04 deep
     check_picture(folder / "openscad.png")
+
+
+def test_elasticity(run):
+    printed, folder = run("elasticity")
+    orders = re.findall(r"order (\S+) (\w+)", printed)
+    assert [float(order) > 1.85 for order, _ in orders] == [True, True]
+    assert {valid for _, valid in orders} == {"True"}
+    assert re.findall(r"tetra|hexahedron", printed) == 2 * ["tetra"] + 2 * ["hexahedron"]
+    check_picture(folder / "elasticity.png")
 
 
 def test_heat(run):

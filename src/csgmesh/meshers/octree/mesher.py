@@ -31,7 +31,7 @@ SMALLER = 0.5
 STAGES = 4
 #: Sizes for mixed cells that vary by no more than this are made even: cells of one size are
 #: hexahedra, of which there are a twelfth as many as of tetrahedra.
-EVEN = 0.5
+EVEN = 0.65
 
 
 @dataclass(frozen=True)
@@ -84,7 +84,10 @@ class Octree:
     they are measured (see `csgmesh.quality`), not proved. Walls and gaps much thinner than the
     size are crossed by one flat layer of cells. A leaf is half or twice its neighbour, so that
     edges lie between 0.6 and 1.4 times a size that varies. Chords of curved faces are as short as
-    the domain's deviation asks for, even where the size allows longer ones.
+    the domain's deviation asks for, even where the size allows longer ones. Mixed cells are
+    tetrahedra where leaves of different sizes meet, and where the solid is thinner than about four
+    sizes; so where the boundary needs down to two thirds of the one size that was asked for, or of
+    the largest where none was, that smaller size holds everywhere.
 
     Termination
     -----------
