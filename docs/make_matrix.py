@@ -151,7 +151,7 @@ def run(solid: str, mesher: str, seconds: float) -> dict[str, Any]:
 
 def row(solid: str, mesher: str, found: dict[str, Any]) -> str:
     """A row of the table."""
-    start = f"| {solid.replace('_', ' ')} | `{MESHERS[mesher][0]}` |"
+    start = f"| {solid.replace('_', ' ')}, {SIZES[solid]} | `{MESHERS[mesher][0]}` |"
     if "failed" in found:
         return f"{start} **failed**: {found['failed'].replace('|', '/')} | | | | |"
     unit, digits = ("", 3) if found["measure"] == "scaled Jacobian" else ("°", 1)
@@ -174,11 +174,12 @@ def write_page(figures: dict[str, dict[str, Any]]) -> None:
         "smallest dihedral angle of each cell, or the smallest scaled Jacobian where all cells are",
         "hexahedra; their worst and their mean. The time is the processor's for the whole call",
         "from tree to mesh, with warm kernels; the check is `cm.check` with the shape given. What",
-        "fails is shown as failed. Drawn up by `docs/make_matrix.py` with csgmesh",
+        "fails is shown as failed. At the axis of a revolution a sweep has cells as thin as its",
+        "turns are small. Drawn up by `docs/make_matrix.py` with csgmesh",
         f"{cm.__version__}, Python {platform.python_version()}, numpy {version('numpy')} and "
         f"manifold3d {version('manifold3d')}.",
         "",
-        "| solid | mesher | cells | worst | mean | time | check |",
+        "| solid, size | mesher | cells | worst | mean | time | check |",
         "|---|---|--:|--:|--:|--:|---|",
     ]
     known = [(s, m) for s, m in combinations([]) if f"{s} {m}" in figures]
