@@ -11,6 +11,11 @@ import numpy as np
 FEW = 2000
 #: So many pairs of boxes are compared sooner than a search tree is built.
 FEW_PAIRS = 20_000
+#: Width of the cells that near points are looked for in, in units of the distance: few points lie
+#: within the distance of a wall.
+_CELL = 64.0
+
+_MIX = np.array([0x9E3779B97F4A7C15, 0xC2B2AE3D27D4EB4F, 0x165667B19E3779F9], np.uint64)
 
 
 class Boxes:
@@ -64,8 +69,41 @@ def near_pairs(points: np.ndarray, distance: float) -> np.ndarray:
         return _few_near_pairs(points, distance)
     from scipy.spatial import cKDTree
 
-    found = cKDTree(points).query_pairs(distance, output_type="ndarray").astype(np.int64)
-    return _sorted_rows(found.reshape(-1, 2).T)
+    some = _in_company(points, distance) if points.shape[1] == 3 else np.arange(len(points))
+    found = cKDTree(points[some]).query_pairs(distance, output_type="ndarray").astype(np.int64)
+    return _sorted_rows(some[found.reshape(-1, 2)].T)
+
+
+def _in_company(points: np.ndarray, distance: float) -> np.ndarray:
+    """Points that may have another within the distance, (k,): far fewer than all if it is small.
+
+    Points are entered into wide cells; who is near a wall, into those beyond it, too.
+    """
+    n = len(points)
+    reach = 1.01 * distance + 4.0 * np.spacing(np.abs(points).max(initial=0.0))
+    width = _CELL * reach
+    first, last = (np.floor((points + side * reach) / width) for side in (-1.0, 1.0))
+    mix = _MIX[: points.shape[1]]
+    low, high = (mix * x.astype(np.int64).view(np.uint64) for x in (first, last))
+    reaching = first != last
+    cells, who = [np.bitwise_xor.reduce(low, axis=1)], [np.arange(n)]
+    several = np.flatnonzero(reaching.any(axis=1))
+    low, high, reaching = low[several], high[several], reaching[several]
+    for corner in list(np.ndindex((2,) * points.shape[1]))[1:]:
+        step = np.array(corner, bool)
+        at = np.flatnonzero((reaching | ~step).all(axis=1))
+        cells.append(np.bitwise_xor.reduce(np.where(step, high[at], low[at]), axis=1))
+        who.append(several[at])
+    cell, entered = np.concatenate(cells), np.concatenate(who)
+    bits = (8 * len(cell)).bit_length()
+    slot = (cell >> np.uint64(64 - bits)).astype(np.int64)
+    last_in = np.empty(1 << bits, np.int64)
+    last_in[slot] = entered
+    shared = np.zeros(1 << bits, bool)
+    shared[slot[last_in[slot] != entered]] = True
+    found = np.zeros(n, bool)
+    found[entered[shared[slot]]] = True
+    return np.flatnonzero(found)
 
 
 def _few_near_pairs(points: np.ndarray, distance: float) -> np.ndarray:

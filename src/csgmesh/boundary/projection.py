@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from csgmesh.boundary.neighbours import distinct
 from csgmesh.domain.curves import ARC, LINE, Curves
 from csgmesh.domain.surfaces import PLANE, REVOLVED, Surfaces
 
@@ -30,8 +31,8 @@ def project_vertices(
     Facets may meet one another where the exact surfaces, which end a little before, do not. Such a
     vertex lies on a surface's continuation; surfaces come back as long as their vertices need.
     """
-    pairs = np.unique(np.column_stack([triangles.ravel(), np.repeat(surface, 3)]), axis=0)
-    vertex, on = pairs.T
+    key = distinct((triangles * len(surfaces) + surface[:, None]).ravel())
+    vertex, on = key // len(surfaces), key % len(surfaces)
     first = np.searchsorted(vertex, np.arange(len(points) + 1))
     count = np.diff(first)
     out = points.copy()

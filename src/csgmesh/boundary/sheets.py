@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from csgmesh.boundary.neighbours import distinct, overlapping_pairs
+from csgmesh.boundary.neighbours import distinct, ordered, overlapping_pairs
 from csgmesh.boundary.touching import Sheets
 from csgmesh.csg.program import Leaf
 
@@ -32,13 +32,16 @@ class Joined:
         The class of surfaces.
     region : (m, 2) int64
     names : list of tuple of str
-        In the order of leaves and parts.
+        Each combination, its names in the order of leaves and parts.
+    name : (m,) int64
+        Into `names`.
     """
 
     triangles: np.ndarray
     surface: np.ndarray
     region: np.ndarray
     names: list[tuple[str, ...]]
+    name: np.ndarray
 
 
 def with_rivals(
@@ -84,7 +87,7 @@ def joined(
 ) -> Joined:
     """One facet for each group of equal ones that separates different regions."""
     ranked = np.sort(sheets.triangles, axis=1)
-    order = np.lexsort(ranked.T[::-1])
+    order = ordered(ranked, len(sheets.points))
     new = np.r_[True, (np.diff(ranked[order], axis=0) != 0).any(axis=1)][: len(order)]
     group = np.empty(len(order), np.int64)
     group[order] = np.cumsum(new) - 1
@@ -98,8 +101,8 @@ def joined(
     bounds = sheets.layer >= 0
     np.minimum.at(surface, group[bounds], of[sheets.surface[bounds]])
     kept = np.flatnonzero(region[:, 0] != region[:, 1])
-    names = _names(sheets, group, len(corners), leaf_of, parts, leaves)
-    return Joined(corners[kept], surface[kept], region[kept], [names[k] for k in kept.tolist()])
+    names, name = _names(sheets, group, len(corners), leaf_of, parts, leaves)
+    return Joined(corners[kept], surface[kept], region[kept], names, name[kept])
 
 
 def _regions(sheets: Sheets, ranked: np.ndarray, group: np.ndarray, n: int) -> np.ndarray:
@@ -126,17 +129,24 @@ def _names(
     leaf_of: np.ndarray,
     parts: Sequence[tuple[int, ...]],
     leaves: Sequence[Leaf],
-) -> list[tuple[str, ...]]:
+) -> tuple[list[tuple[str, ...]], np.ndarray]:
+    """All combinations of names, and the number of each group's."""
     n_surfaces = len(leaf_of)
     key = distinct(group * n_surfaces + sheets.surface)
-    of_group, surface = key // n_surfaces, (key % n_surfaces).tolist()
-    start = np.searchsorted(of_group, np.arange(n + 1)).tolist()
-    known: dict[tuple[int, ...], tuple[str, ...]] = {}
+    of_group, surface = key // n_surfaces, key % n_surfaces
+    start = np.searchsorted(of_group, np.arange(n + 1))
+    known: dict[tuple[str, ...], int] = {}
 
-    def names(on: tuple[int, ...]) -> tuple[str, ...]:
-        if on not in known:
-            entries = sorted((int(leaf_of[s]), p) for s in on for p in parts[s])
-            known[on] = tuple(dict.fromkeys(leaves[leaf].names[p] for leaf, p in entries))
-        return known[on]
+    def number(on: Sequence[int]) -> int:
+        entries = sorted((int(leaf_of[s]), p) for s in on for p in parts[s])
+        names = tuple(dict.fromkeys(leaves[leaf].names[p] for leaf, p in entries))
+        return known.setdefault(names, len(known))
 
-    return [names(tuple(surface[start[k] : start[k + 1]])) for k in range(n)]
+    # Nearly all facets lie on one surface, and there are few of these.
+    lone = np.diff(start) == 1
+    single, at = np.unique(surface[start[:-1][lone]], return_inverse=True)
+    out = np.empty(n, np.int64)
+    out[lone] = np.array([number([s]) for s in single.tolist()], np.int64)[at]
+    for k in np.flatnonzero(~lone).tolist():
+        out[k] = number(surface[start[k] : start[k + 1]].tolist())
+    return list(known), out

@@ -24,6 +24,7 @@ from csgmesh.boundary.facets import Facets
 from csgmesh.boundary.leaves import Frame, frame_of, leaf_bodies
 from csgmesh.boundary.projection import project_vertices
 from csgmesh.boundary.sheets import joined, with_rivals
+from csgmesh.boundary.shells import shells
 from csgmesh.boundary.sweeps import swept_domain
 from csgmesh.boundary.touching import Sheets, settle
 from csgmesh.boundary.untangling import untangled
@@ -67,12 +68,12 @@ def evaluate_solid(shape: Any, deviation: float | None, snap: float | None) -> P
     _refuse_unbounded(sheets, stock, frame)
     shared = classes.shared(stock.leaf)
     sheets = with_rivals(sheets, _leaf_sheets(bodies), stock.leaf, classes.of, shared)
-    settled = settle(sheets, near)
+    settled = settle(sheets, shells(bodies, program.leaves, stock.surfaces), near)
     found = joined(settled, classes.of, stock.leaf, stock.parts, program.leaves)
     if not len(found.triangles):
         raise EmptyDomainError("the domain is empty: what is left has no thickness")
     report = _report(settled, stock, program, frame)
-    table, marker = _markers(found.names, program.leaves)
+    table, marker = _markers(found.names, found.name, program.leaves)
     before, triangles, surface, region, marker = canonical(
         settled.points, found.triangles, found.surface, found.region, marker
     )
@@ -127,13 +128,14 @@ def _leaf_sheets(bodies: Sequence[Facets]) -> Sheets:
 
 
 def _markers(
-    names: Sequence[tuple[str, ...]], leaves: Sequence[Leaf]
+    names: Sequence[tuple[str, ...]], name: np.ndarray, leaves: Sequence[Leaf]
 ) -> tuple[tuple[tuple[str, ...], ...], np.ndarray]:
-    """The table of names in the order of the tree, whatever order facets come in; and numbers."""
+    """The table of names in use, in the order of the tree; and each facet's number in it."""
     place = {n: k for k, n in enumerate(n for leaf in leaves for n in leaf.names)}
-    _, table = marker_table(sorted(set(names), key=lambda entry: [place[n] for n in entry]))
+    used = [names[k] for k in np.flatnonzero(np.bincount(name, minlength=len(names))).tolist()]
+    _, table = marker_table(sorted(used, key=lambda entry: [place[n] for n in entry]))
     number_of = {entry: k for k, entry in enumerate(table)}
-    return table, np.array([number_of[entry] for entry in names], np.int64)
+    return table, np.array([number_of.get(entry, -1) for entry in names], np.int64)[name]
 
 
 def _refuse_unbounded(sheets: Sheets, stock: _Stock, frame: Frame) -> None:

@@ -15,6 +15,8 @@ import numpy as np
 
 from csgmesh.boundary.neighbours import distinct, overlapping_pairs
 from csgmesh.boundary.overlay import coplanar_overlaps, overlaid
+from csgmesh.boundary.separation import Sides, contacts
+from csgmesh.boundary.shells import Shells
 from csgmesh.boundary.splitting import halved
 from csgmesh.errors import EvaluationError
 from csgmesh.graphs import components
@@ -61,7 +63,7 @@ class _Events:
         return bool(len(self.edge) or len(self.facet))
 
 
-def settle(sheets: Sheets, snap: float) -> Sheets:
+def settle(sheets: Sheets, known: Shells, snap: float) -> Sheets:
     """Merge what is closer than `snap`, split what is touched or crossed.
 
     Raises
@@ -71,10 +73,11 @@ def settle(sheets: Sheets, snap: float) -> Sheets:
     """
     _merge_points(sheets, snap)
     active, suspect = np.ones((2, len(sheets.triangles)), bool)
-    is_whole = True
+    is_whole = is_first = True
     for _ in range(_ROUNDS):
         facet = np.flatnonzero(active)
-        pairs = _near(sheets, facet, snap)
+        pairs = _near(sheets, facet, known if is_first else None, snap)
+        is_first = False
         events, involved = _touched(sheets, facet, pairs, snap)
         suspect = involved if is_whole else suspect | involved
         if not events and is_whole:
@@ -215,12 +218,30 @@ def _touched(
     return events, involved
 
 
-def _near(sheets: Sheets, facet: np.ndarray, snap: float) -> np.ndarray:
-    """Pairs of facets of different sheets that no plane of either keeps apart, (k, 2)."""
+def _near(sheets: Sheets, facet: np.ndarray, known: Shells | None, snap: float) -> np.ndarray:
+    """Pairs of facets of different sheets that no plane of either keeps apart, (k, 2).
+
+    Leaves are `known` as long as their facets are what they were.
+    """
     corner = sheets.points[sheets.triangles[facet]]
-    pairs = overlapping_pairs(
-        corner.min(axis=1) - snap, corner.max(axis=1) + snap, _sheet(sheets)[facet]
-    )
+    lo, hi = corner.min(axis=1) - snap, corner.max(axis=1) + snap
+    sheet = _sheet(sheets)[facet]
+    if known is not None:
+        open_to = contacts(
+            Sides(
+                sheets.points,
+                sheets.triangles[facet],
+                sheets.surface[facet],
+                sheets.layer[facet],
+                known.leaf[sheets.surface[facet]],
+            ),
+            known,
+            snap,
+        )
+        some = open_to.facets
+        pairs = open_to.among(some[overlapping_pairs(lo[some], hi[some], sheet[some])])
+    else:
+        pairs = overlapping_pairs(lo, hi, sheet)
     for a, b in ((0, 1), (1, 0)):
         p, q = corner[pairs[:, a]], corner[pairs[:, b]]
         normal = np.cross(p[:, 1] - p[:, 0], p[:, 2] - p[:, 0])
