@@ -91,6 +91,17 @@ def of_many_magnitudes(rng: np.random.Generator) -> np.ndarray:
     return rng.choice([-1.0, 1.0], (5, 3)) * 2.0 ** rng.integers(-40, 40, (5, 3))
 
 
+def beside_a_sphere_along_its_tangent(rng: np.random.Generator) -> np.ndarray:
+    """Points of a sphere through the origin, the last a tiny step off: only expansions can tell."""
+    radius = 1185665.0
+    four = np.array(
+        [[1154844, 268583, 0], [0, 711399, -948532], [-7852, 0, 1185639], [0, 0, radius]]
+    )
+    four[:, 1:] *= rng.choice([-1, 1], (4, 2))
+    step = rng.choice([-1.0, 1.0], 2) * 2.0 ** rng.integers(-70, -40, 2)
+    return np.vstack([rng.permutation(four) - [radius, 0, 0], [0, *step]])
+
+
 def almost_in_a_plane(rng: np.random.Generator) -> np.ndarray:
     """Volumes of a few units, 2^-104 of the products that make them up."""
     u, v = ([int(c) for c in rng.integers(2**25, 2**26, 3)] for _ in range(2))
@@ -119,6 +130,7 @@ def almost_in_a_plane(rng: np.random.Generator) -> np.ndarray:
         on_corners_of_a_box,
         in_a_plane,
         almost_in_a_plane,
+        beside_a_sphere_along_its_tangent,
         on_a_circle_of_a_lattice,
         far_from_the_origin,
         of_many_magnitudes,
