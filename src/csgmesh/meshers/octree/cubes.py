@@ -121,21 +121,21 @@ def _octahedron_parts(
     A tetrahedron is one if it has the centres of two leaves side by side and two corners of the
     side between them; these are neighbours, for with opposite corners it would be flat.
     """
-    leaf_of, corner_of = np.full(n_points, -1), np.full(n_points, -1)
+    leaf_of, corner_of = np.full(n_points, -1, np.int32), np.full(n_points, -1, np.int32)
     for of, number in ((leaf_of, centre), (corner_of, corner)):
         known = np.flatnonzero(number >= 0)
         of[number[known]] = known
-    is_centre, is_corner = leaf_of >= 0, corner_of >= 0
-    row = np.flatnonzero((is_centre[tets].sum(axis=1) == 2) & (is_corner[tets].sum(axis=1) == 2))
-    corners = tets[row]
-    turn = np.argsort(~is_centre[corners], axis=1, kind="stable")
-    corners = np.take_along_axis(corners, turn, axis=1)
-    one, other = leaf_of[corners[:, 0]], leaf_of[corners[:, 1]]
+    leaf = leaf_of[tets]
+    row = np.flatnonzero((leaf >= 0).sum(axis=1) == 2)
+    vertex, leaf = corner_of[tets[row]], leaf[row]
+    # Of the other two there is -1 in each row.
+    one, two = leaf.max(axis=1), vertex.max(axis=1)
+    other, three = leaf.sum(axis=1) + 2 - one, vertex.sum(axis=1) + 2 - two
     ways = grid.next_to[one] == other[:, None]
     way = np.argmax(ways, axis=1)
-    sides = grid.leaf_corner[one[:, None], _SIDES[way]]
-    on_side = [(sides == corner_of[corners[:, k]][:, None]).any(axis=1) for k in (2, 3)]
-    at = np.flatnonzero(ways.any(axis=1) & on_side[0] & on_side[1])
+    sides = grid.leaf_corner.astype(np.int32)[:, _SIDES].reshape(-1, 4)[6 * one + way]
+    is_on = [(sides == corner[:, None]).any(axis=1) for corner in (two, three)]
+    at = np.flatnonzero(ways.any(axis=1) & is_on[0] & is_on[1])
     low = np.where(way & 1, one, other)
     return row[at], low[at], way[at] >> 1
 
