@@ -30,7 +30,7 @@ ONE_THREAD = dict.fromkeys(
     ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS"), "1"
 )
 #: Seconds that a measurement may take.
-LIMIT = 75.0
+LIMIT = 90.0
 #: Cells times the cube of the edge length, which hardly depends on it.
 UNIFORM = {
     "ours": 15.5,

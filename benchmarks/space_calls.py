@@ -1,7 +1,7 @@
 """One measurement of ``space.py``, in a process of its own: ``space_calls.py FUNCTION ARGUMENTS``.
 
 Arguments are a list in JSON, and so is what is printed last: a row. Times are processor times,
-medians of whole calls after one that is not counted.
+medians of whole calls after a coarse one that is not counted.
 """
 
 from __future__ import annotations
@@ -60,10 +60,8 @@ def timed(run: Callable[[], Any], repeats: int) -> tuple[Row, Any]:
 def mesher(name: str, size: float, repeats: int) -> Row:
     """What one mesher takes for an edge length, and what it makes of it."""
     run: Callable[[float], tuple[np.ndarray, np.ndarray]] = getattr(peers, name)
-    # Loads packages and kernels; what runs once only is long, and is not worth a whole call more.
+    # Loads packages and kernels.
     run(max(0.1, size))
-    if repeats > 1:
-        run(size)
     row, (points, cells) = timed(lambda: run(size), repeats)
     row |= {"size": size, "cells": len(cells), "cells_per_second": len(cells) / row["seconds"]}
     if cells.shape[1] == 4:
