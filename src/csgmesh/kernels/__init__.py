@@ -54,6 +54,7 @@ _HOME = {
     "treat_triangles": "improvement",
     "lowest_sources": "sizes.sources",
     "limit_growth": "sizes.gradation",
+    "first_met": "sizes.rays",
     "flip_edges": "delaunay_flips.flips",
     "number_edges": "refine_cells.edges",
     "cells_of_edges": "refine_cells.edges",

@@ -41,7 +41,7 @@ class GradedSources:
         self, pieces: np.ndarray, value: np.ndarray, reach: np.ndarray | float, growth: float
     ) -> None:
         m = len(pieces)
-        self.order = _along_a_curve(pieces.mean(axis=1))
+        self.order = along_a_curve(pieces.mean(axis=1))
         n_leaves = 1
         while n_leaves * PER_LEAF < m:
             n_leaves *= 2
@@ -57,10 +57,10 @@ class GradedSources:
         high = np.full((room, 2), -np.inf)
         low[:m], high[:m] = self._piece[:m].min(axis=1), self._piece[:m].max(axis=1)
         self._box = np.concatenate(
-            [_nodes(low, np.minimum, np.inf), _nodes(high, np.maximum, -np.inf)], axis=1
+            [box_nodes(low, np.minimum, np.inf), box_nodes(high, np.maximum, -np.inf)], axis=1
         )
-        self._low = _nodes(self._value[:, None], np.minimum, np.inf)[:, 0]
-        self._far = _nodes(self._reach[:, None], np.maximum, 0.0)[:, 0]
+        self._low = box_nodes(self._value[:, None], np.minimum, np.inf)[:, 0]
+        self._far = box_nodes(self._reach[:, None], np.maximum, 0.0)[:, 0]
 
     def __call__(self, points: np.ndarray) -> np.ndarray:
         """Sizes at points (n, 2), as (n,)."""
@@ -69,7 +69,7 @@ class GradedSources:
     def lowest(self, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Sizes at points (n, 2), and the piece that each is due to."""
         # Neighbours ask in turn: each finds what it needs in the processor's cache.
-        turn = _along_a_curve(points)
+        turn = along_a_curve(points)
         flat = np.ascontiguousarray(points[turn], float).reshape(-1)
         value, which = np.empty(len(turn)), np.empty(len(turn), np.int64)
         for start in range(0, len(value), _BATCH):
@@ -91,7 +91,7 @@ class GradedSources:
         return out_value, out_which
 
 
-def _nodes(leaf: np.ndarray, reduce: np.ufunc, empty: float) -> np.ndarray:
+def box_nodes(leaf: np.ndarray, reduce: np.ufunc, empty: float) -> np.ndarray:
     """Values of all nodes of a tree, from those of its pieces; node 0 is none."""
     level = reduce.reduce(leaf.reshape(-1, PER_LEAF, leaf.shape[1]), axis=1)
     levels = [level]
@@ -102,16 +102,17 @@ def _nodes(leaf: np.ndarray, reduce: np.ufunc, empty: float) -> np.ndarray:
     return np.ascontiguousarray(np.concatenate([none, *levels[::-1]]))
 
 
-def _along_a_curve(points: np.ndarray) -> np.ndarray:
+def along_a_curve(points: np.ndarray) -> np.ndarray:
     """The order of points along Morton's curve."""
     if not len(points):
         return np.zeros(0, np.int64)
+    dim = points.shape[1]
     low = points.min(axis=0)
     extent = float((points.max(axis=0) - low).max())
     scale = ((1 << _BITS) - 1) / extent if extent > 0 else 0.0
     square = ((points - low) * scale).astype(np.int64)
     key = np.zeros(len(points), np.int64)
     for bit in range(_BITS):
-        for axis in (0, 1):
-            key |= ((square[:, axis] >> bit) & 1) << (2 * bit + axis)
+        for axis in range(dim):
+            key |= ((square[:, axis] >> bit) & 1) << (dim * bit + axis)
     return np.argsort(key, kind="stable")

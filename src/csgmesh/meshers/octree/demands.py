@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -19,6 +19,8 @@ LARGEST_SHARE = 0.15
 #: smallest of sizes in it that differ by more than the ratio.
 LEAF = 1.4
 RATIO = 1.3
+#: No shorter edge counts than this share of the diagonal: a tree has 20 levels only.
+SHORTEST = 1e-5
 #: Leaves wherever a given size is looked at first: 16 along each side of the root.
 FIRST_LEVEL = 4
 #: Places within a leaf, as shares of its side, at which a given size is looked at.
@@ -66,6 +68,7 @@ class SizeDemands:
             else:
                 named.append((on, source))
         points, lengths = short_edges(domain)
+        lengths = np.maximum(lengths, SHORTEST * domain.diagonal)
         base = None
         if asked is not None:
             base = _Base(domain, asked) if asked.region else asked.default
@@ -81,6 +84,14 @@ class SizeDemands:
     def least(self) -> float:
         """A bound below which the boundary asks for nothing."""
         return 0.0 if self.named else float(self.size.min(initial=np.inf))
+
+    def joined(self, triangles: np.ndarray, size: np.ndarray) -> SizeDemands:
+        """These demands and those of more triangles (k, 3, 3)."""
+        return replace(
+            self,
+            triangles=np.concatenate([self.triangles, triangles]),
+            size=np.concatenate([self.size, size]),
+        )
 
     def ask(self, points: np.ndarray) -> np.ndarray:
         """What is asked for in the volume, infinite outside the domain where it makes no sense.

@@ -58,6 +58,10 @@ class Octree:
         Whether to raise the smallest dihedral angles at last.
     max_points : int, default 10**7
         Bound on the number of points.
+    walls : int, default 1
+        Cells across thin walls and gaps: edges there are no longer than three times the thickness
+        over this number, 0 looks at no walls. See the exceptions. Sizes of hexahedra do not regard
+        walls.
 
     Raises
     ------
@@ -81,13 +85,22 @@ class Octree:
     closed interfaces only. Solids they do not resolve even at half the size are refused with the
     place.
     There is no bound on dihedral angles at the surface and where leaves of different sizes meet:
-    they are measured (see `csgmesh.quality`), not proved. Walls and gaps much thinner than the
-    size are crossed by one flat layer of cells. A leaf is half or twice its neighbour, so that
-    edges lie between 0.6 and 1.4 times a size that varies. Chords of curved faces are as short as
-    the domain's deviation asks for, even where the size allows longer ones. Mixed cells are
+    they are measured (see `csgmesh.quality`), not proved. A leaf is half or twice its
+    neighbour, so that edges lie between 0.6 and 1.4 times a size that varies. Chords of curved
+    faces are as short as the domain's deviation asks for, even where the size allows longer ones.
+
+    Mixed cells are
     tetrahedra where leaves of different sizes meet, and where the solid is thinner than about four
     sizes; so where the boundary needs down to two thirds of the one size that was asked for, or of
     the largest where none was, that smaller size holds everywhere.
+
+    No size goes below a thousandth of the domain's diagonal for the sake of a wall, and walls take
+    no more than a fiftieth of `max_points`: beyond that they are crossed by flatter cells, with
+    edges of up to eight times the thickness. What is thinner still, and with it the cusps where two
+    surfaces touch or all but touch, gets no finer cells at all: they would only be flatter. Where a
+    mesh has thin walls ``info["walls"]`` has the ``thinnest`` as far as it was looked at, its
+    ``place``, the ``smallest_size`` that walls led to, and the ``flat_area`` of the boundary where
+    cells are flatter than asked for.
 
     Termination
     -----------
@@ -115,6 +128,7 @@ class Octree:
     gradation: float = 0.3
     improve: bool = True
     max_points: int = 10**7
+    walls: int = 1
 
     dim = 3
 
@@ -122,6 +136,7 @@ class Octree:
         check_choice("cells", self.cells, CELLS, "Octree")
         checked = {
             "gradation": check_growth("gradation", self.gradation),
+            "walls": check_whole("walls", self.walls, 0),
             "max_points": check_whole("max_points", self.max_points, 4),
             "improve": check_flag("improve", self.improve),
         }
@@ -156,19 +171,25 @@ class Octree:
         if self.cells == "hexahedron":
             sizes = even_sizes(domain, size, self.gradation, self.max_points)
             return hexahedral_mesh(domain, sizes, max_points=self.max_points, progress=progress)
-        filled, surface, grid = self._tetrahedra(domain, size, progress)
+        sizes = self._sizes(domain, size)
+        filled, surface, grid = self._tetrahedra(domain, sizes, progress)
         info: dict[str, object] = {"method": "Octree", "options": dict(vars(self))}
+        if sizes.walls is not None:
+            info["walls"] = sizes.walls.info()
         if grid is None:
             return tetra_mesh(filled, surface, info)
         return mixed_mesh(filled, surface, grid, info)
 
-    def _tetrahedra(
-        self, domain: Plc, size: Any, progress: Progress | None
-    ) -> tuple[Tetrahedra, SurfaceMesh, Lattice | None]:
-        told = progress or _silent
+    def _sizes(self, domain: Plc, size: Any) -> SpaceSizes:
         sizes = SpaceSizes.of(domain, size, self.gradation, self.max_points)
         if self.cells == "mixed":
             sizes = _even(sizes, resolve(size, domain), self.max_points)  # type: ignore[arg-type]
+        return sizes.fit_for_walls(self.walls, self.max_points, self.max_points)
+
+    def _tetrahedra(
+        self, domain: Plc, sizes: SpaceSizes, progress: Progress | None
+    ) -> tuple[Tetrahedra, SurfaceMesh, Lattice | None]:
+        told = progress or _silent
         for _ in range(ROUNDS):
             told("surface", 0, STAGES)
             surface = surface_mesh(domain, sizes, max_points=self.max_points, progress=progress)

@@ -11,6 +11,7 @@ from csgmesh import kernels
 from csgmesh.domain.plc import Plc
 from csgmesh.errors import BudgetError
 from csgmesh.meshers.octree.demands import LARGEST_SHARE, SizeDemands
+from csgmesh.meshers.octree.thin_walls import ThinWalls, thin_walls
 from csgmesh.size.field import Source, UniformSize
 from csgmesh.size.resolve import resolve
 from csgmesh.tree import LinearTree
@@ -50,6 +51,8 @@ class SpaceSizes:
         Leaves where nothing but what was asked for counts.
     given : SizeDemands
         What the sizes were made of.
+    walls : ThinWalls or None
+        Thin walls that were found.
 
     Examples
     --------
@@ -70,6 +73,7 @@ class SpaceSizes:
     source: np.ndarray
     is_free: np.ndarray
     given: SizeDemands
+    walls: ThinWalls | None = None
 
     @classmethod
     def of(cls, domain: Plc, size: Any, gradation: float, max_points: int) -> SpaceSizes:
@@ -141,15 +145,29 @@ class SpaceSizes:
             np.minimum(out, self.given.ask(points), out=out)
         return out
 
+    def fit_for_walls(self, across: int, points: int, max_points: int) -> SpaceSizes:
+        """The sizes, no larger than cells `across` thin walls ask for.
+
+        Walls share in so many `points`. Where they ask for more points than `max_points` all the
+        same, they get larger sizes, or are left alone.
+        """
+        while across and points:
+            found = thin_walls(self.domain, self, across, points)
+            if found is None:
+                break
+            if not len(found.size):
+                return replace(self, walls=found)
+            given = self.given.joined(found.triangles, found.size)
+            try:
+                return replace(SpaceSizes.made(given, self.gradation, max_points), walls=found)
+            except BudgetError:
+                points //= 4
+        return self
+
     def smaller_at(self, points: np.ndarray, share: float, max_points: int) -> SpaceSizes:
         """The sizes with `share` of what they are now at some points (k, 3)."""
-        wanted = share * self(points)
-        given = replace(
-            self.given,
-            triangles=np.concatenate([self.given.triangles, np.repeat(points[:, None], 3, axis=1)]),
-            size=np.concatenate([self.given.size, wanted]),
-        )
-        return SpaceSizes.made(given, self.gradation, max_points)
+        given = self.given.joined(np.repeat(points[:, None], 3, axis=1), share * self(points))
+        return replace(SpaceSizes.made(given, self.gradation, max_points), walls=self.walls)
 
     def _check_budget(self, max_points: int) -> None:
         """Refuse sizes that ask for more points than allowed, by the volumes of leaves inside."""

@@ -39,6 +39,9 @@ class SurfaceRefinement:
         Bound on the growth of sizes per unit of length.
     max_points : int, default 10**7
         Bound on the number of points.
+    walls : int, default 1
+        Edges on both sides of a thin wall or gap are no longer than three times its thickness over
+        this number, as for `Octree`; 0 looks at no walls.
 
     Raises
     ------
@@ -56,7 +59,8 @@ class SurfaceRefinement:
     ----------
     Angles are smaller where corners of faces enforce it and in slits of faces that are thinner
     than the deviation of the domain: they are measured (see `csgmesh.quality`), not proved.
-    Triangles of different faces may cross where walls are thinner than sizes resolve.
+    Triangles of different faces may cross where walls are thinner than sizes resolve: those below
+    a thousandth of the diagonal, gaps outside the domain, and with ``walls=0`` any.
 
     Termination
     -----------
@@ -82,6 +86,7 @@ class SurfaceRefinement:
     min_angle: float = 25.0
     gradation: float = 0.3
     max_points: int = 10**7
+    walls: int = 1
 
     dim = 3
 
@@ -93,6 +98,7 @@ class SurfaceRefinement:
             ),
             "gradation": check_growth("gradation", self.gradation),
             "max_points": check_whole("max_points", self.max_points, 4),
+            "walls": check_whole("walls", self.walls, 0),
         }
         for name, value in checked.items():
             object.__setattr__(self, name, value)
@@ -125,6 +131,7 @@ class SurfaceRefinement:
         is_one = as_real(size) is not None
         budget = _UNLIMITED if is_one else max(self.max_points, _LEAST_BUDGET)
         sizes = SpaceSizes.of(domain, size, self.gradation, budget)
+        sizes = sizes.fit_for_walls(self.walls, self.max_points, budget)
         surface = surface_mesh(
             domain,
             sizes,
@@ -132,7 +139,10 @@ class SurfaceRefinement:
             max_points=self.max_points,
             progress=progress,
         )
-        return triangle_mesh(surface, {"method": "SurfaceRefinement", "options": dict(vars(self))})
+        info: dict[str, object] = {"method": "SurfaceRefinement", "options": dict(vars(self))}
+        if sizes.walls is not None:
+            info["walls"] = sizes.walls.info()
+        return triangle_mesh(surface, info)
 
 
 def triangle_mesh(surface: SurfaceMesh, info: dict[str, object]) -> Mesh:

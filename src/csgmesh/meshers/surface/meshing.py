@@ -33,6 +33,10 @@ BEND = 0.8
 #: Rounds of taking vertices away, at most.
 _ROUNDS = 8
 _SMOOTHINGS = 4
+#: Passes of flips before vertices are taken away, at most, and flips in proportion to triangles
+#: below which no other pass is needed.
+_PASSES = 200
+_SETTLED = 0.01
 #: Triangles or vertices that one call of a kernel treats: less than 0.2 s.
 _SLICE = 20_000
 #: The kernel may add so many points before sizes are asked for again, at least.
@@ -147,7 +151,11 @@ class _Run:
     def coarsen(self) -> None:
         """Take away vertices that are not wanted, and flip, until nothing changes."""
         work = self.work
-        self._flip(True)
+        # Across a thin face the samples of its curves are fans at first, which one pass turns
+        # only so far.
+        for _ in range(_PASSES):
+            if self._flip(True) <= _SETTLED * work.n_triangles:
+                break
         for _ in range(_ROUNDS):
             taken = 0
             for dim in (1, 2):

@@ -44,7 +44,12 @@ def swap_missing(
     for _ in range(_ROUNDS):
         if (found >= 0).all():
             break
-        rows, swapped = candidates(points, triangles, face, fixed, found < 0)
+        # All that shares an edge with a missing triangle has two of the missing ones' corners.
+        at_missing = np.zeros(len(points), bool)
+        at_missing[triangles[found < 0]] = True
+        some = np.flatnonzero(at_missing[triangles].sum(axis=1) >= 2)
+        rows, swapped = candidates(points, triangles[some], face[some], fixed, found[some] < 0)
+        rows = some[rows]
         there = net.faces(swapped.reshape(-1, 3)).reshape(-1, 2)
         gain = (there >= 0).sum(axis=1) - (found[rows] >= 0).sum(axis=1)
         worth = np.where(gain == 0, 0.5 * is_better(points, swapped), gain)
