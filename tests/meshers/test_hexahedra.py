@@ -35,6 +35,7 @@ SHARP = {
     "boss": (PLATE | cm.Cylinder((1, 1, 0.3), (1, 1, 1.2), 0.5, name="boss"), 0.15),
     "knob": (PLATE | cm.Ball((1, 1, 0.6), 0.5, name="knob"), 0.15),
     "cone": (PLATE | cm.Cone((1, 1, 0.6), (1, 1, 1.4), 0.5, 0.2, name="cone"), 0.15),
+    "apex": (cm.Cone((0, 0, 0), (0, 0, 1), 0.6, 0), 0.08),
     "corner": (CUBE | cm.Ball((1, 1, 1), 0.4, name="ball"), 0.12),
     "tee": (
         cm.Cylinder((-1.2, 0, 0), (1.2, 0, 0), 0.5) | cm.Cylinder((0, 0, 0), (0, 0, 1), 0.35),

@@ -23,6 +23,10 @@ _ROOM = 10
 _LOOSE = 1.2
 
 
+#: Where middles are looked up, in cells from them: no axis of a revolved solid runs there.
+_ASIDE = np.array([3e-7, 2e-7, 1e-7])
+
+
 @dataclass(frozen=True, eq=False)
 class Core:
     """Cells of a grid, padded with one layer outside, as one flat array with z fastest.
@@ -66,7 +70,7 @@ def core_of(strata: Strata, grid: Grid, size: float, inset: float, max_points: i
     near, depth, between = _depths(strata, grid, size)
     cells = np.zeros(int(shape.prod()), np.int8)
     asked = np.flatnonzero(near)
-    cells[asked] = _regions(strata, grid.middles(asked)) + 1
+    cells[asked] = _regions(strata, grid.middles(asked) + size * _ASIDE) + 1
     kernels.spread_regions(*grid.shape, near, cells)
     loose = asked[depth[asked] <= _LOOSE]
     signed = np.where(cells[loose] > 0, depth[loose], -depth[loose])

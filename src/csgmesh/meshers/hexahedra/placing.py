@@ -60,6 +60,15 @@ def places_of(blocks: Blocks, strata: Strata, size: float) -> Places:
         _corner(strata, blocks.points[v], label[first[v] : first[v] + count[v]].tolist(), size)
         for v in at_corner.tolist()
     ]
+    for k, around in enumerate(strata.corner_faces):
+        if len(around) == 1:
+            near = np.flatnonzero(face == around[0])
+            gap = ((blocks.points[near] - strata.corners[k]) ** 2).sum(axis=1)
+            if not len(near) or gap.min() > (4.0 * size) ** 2:
+                raise unresolved("a peak is lost", strata.corners[k])
+            peak = near[np.argmin(gap)]
+            kind[peak], face[peak] = FIXED, -1
+            at_corner, corner = np.append(at_corner, peak), [*corner, k]
     found = np.array(corner, np.int64)
     twice = np.flatnonzero(np.bincount(found, minlength=len(strata.corners)) > 1)
     if len(twice):
@@ -123,20 +132,32 @@ def spread(
     is_feature = label[one // 4] != label[two // 4]
     tail, head = quads.ravel(), quads[:, [1, 2, 3, 0]].ravel()
     edge = np.column_stack([tail[one], head[one]])
-    for wanted, chosen in ((ON_CURVE, edge[is_feature]), (ON_FACE, edge)):
-        moves = (places.kind == wanted) & loose
+    is_curve = loose & (places.kind == ON_CURVE)
+    on_face = loose & (places.kind == ON_FACE)
+    close = is_curve.copy()
+    for _ in range(_RINGS):
+        close[edge[close[edge].any(axis=1)].ravel()] = True
+    for moves, chosen, rounds in (
+        (is_curve, edge[is_feature], _SPREADING),
+        (on_face, edge, _SPREADING),
+        (on_face & close, edge, _SPREADING_AT_CURVES),
+    ):
         moved = np.flatnonzero(moves)
+        if not len(moved):
+            continue
         ways = np.concatenate([chosen, chosen[:, ::-1]])
         ways = ways[moves[ways[:, 0]]]
         ways = ways[np.argsort(ways[:, 0], kind="stable")]
-        begin = np.searchsorted(ways[:, 0], moved)
-        begin = np.append(begin, len(ways))
+        begin = np.append(np.searchsorted(ways[:, 0], moved), len(ways))
         out = np.empty((len(moved), 3))
         neighbours = np.ascontiguousarray(ways[:, 1])
-        for _ in range(_SPREADING):
+        for _ in range(rounds):
             kernels.average_along(points, moved, begin, neighbours, 0.75, out)
             points[moved] = out
-            put(points, places, strata, moved, first=wanted == ON_CURVE)
+            put(points, places, strata, moved, first=moves is is_curve)
 
 
 _SPREADING = 4
+#: Further rounds for vertices on faces so many quads from a curve: rows of cells along curves
+#: start without any width, and optimisation does not open them.
+_SPREADING_AT_CURVES, _RINGS = 26, 6

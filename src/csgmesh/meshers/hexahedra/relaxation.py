@@ -8,13 +8,15 @@ import numpy as np
 
 from csgmesh import kernels
 from csgmesh.meshers.hexahedra.blocks import Blocks
-from csgmesh.meshers.hexahedra.placing import FIXED, FREE, Places, frames, put
+from csgmesh.meshers.hexahedra.placing import FIXED, FREE, ON_CURVE, Places, frames, put
 from csgmesh.meshers.hexahedra.strata import Strata
 
 #: Cells with a smaller scaled Jacobian are optimised.
 _GOOD = 0.45
 _AVERAGING = 3
-_UNTANGLING = 60
+#: Further rounds so many cells from a curve.
+_AVERAGING_AT_CURVES, _NEAR_CURVES = 5, 4
+_UNTANGLING = 25
 _ROUNDING = 6
 _SHARPENING = 8
 
@@ -55,13 +57,18 @@ class Relaxation:
 
     def average(self) -> None:
         """Inner vertices to the mean of their neighbours."""
-        inner = np.flatnonzero(self.moves & (self.places.kind == FREE))
-        for _ in range(_AVERAGING):
-            start = 0
-            while start < len(inner):
-                start = kernels.average_in_cells(
-                    self.points, self.hexes, self.star, self.star_begin, inner, start
-                )
+        inner = self.moves & (self.places.kind == FREE)
+        close = (self.places.kind == ON_CURVE) & self.moves
+        for _ in range(_NEAR_CURVES if close.any() else 0):
+            close[self.hexes[close[self.hexes].any(axis=1)].ravel()] = True
+        for own, rounds in ((inner, _AVERAGING), (inner & close, _AVERAGING_AT_CURVES)):
+            vertices = np.flatnonzero(own)
+            for _ in range(rounds if len(vertices) else 0):
+                start = 0
+                while start < len(vertices):
+                    start = kernels.average_in_cells(
+                        self.points, self.hexes, self.star, self.star_begin, vertices, start
+                    )
 
     def sweep(self, vertices: np.ndarray, epsilon: float, power: int) -> None:
         """Visit some vertices once, then put those of the boundary back."""

@@ -49,7 +49,7 @@ class Strata:
         Angle inside the solid between them, degrees.
     corners : (c, 3) float64
     corner_faces : tuple of tuple of int
-        Faces around each corner, sorted.
+        Faces around each corner, sorted; a single one around the apex of a cone.
     """
 
     domain: Plc
@@ -75,6 +75,9 @@ class Strata:
         axis, place = _flat_faces(domain, face, len(table))
         edges, pair, turn = _curves(domain, face, sign)
         corners, around = _corners(domain, face, edges, pair)
+        peaks = np.setdiff1d(_peaks(domain, sign), corners)
+        corners = np.concatenate([corners, peaks])
+        around = (*around, *((f,) for f in _faces_at(domain, face, peaks)))
         return cls(
             domain,
             face,
@@ -247,6 +250,37 @@ def _corners(
     for f, p in zip(face[rows].tolist(), domain.facets[rows, columns].tolist(), strict=True):
         around[position[p]].add(f)
     return found, tuple(tuple(sorted(faces)) for faces in around)
+
+
+#: Closeness to a point, as a share of its facets, from which normals are compared, and the angle's
+#: cosine between them from which on the point is a peak of its surface, as a cone's apex is.
+_CLOSE, _PEAKED = 1e-3, 0.97
+
+
+def _peaks(domain: Plc, sign: np.ndarray) -> np.ndarray:
+    """Points without a tangent plane in the midst of one face, (k,)."""
+    at = domain.facets.ravel()
+    centre = np.repeat(domain.points[domain.facets].mean(axis=1), 3, axis=0)
+    near = domain.points[at] + _CLOSE * (centre - domain.points[at])
+    surface = np.repeat(domain.facet_surface, 3)
+    normal = domain.surfaces.normals(surface, domain.surfaces.project(surface, near))
+    normal *= np.repeat(sign, 3)[:, None]
+    n = len(domain.points)
+    total = np.column_stack([np.bincount(at, normal[:, k], n) for k in range(3)])
+    mean = total / np.maximum(np.sqrt((total**2).sum(axis=1)), 1e-300)[:, None]
+    least = np.ones(n)
+    np.minimum.at(least, at, (normal * mean[at]).sum(axis=1))
+    lowest, highest = np.full(n, len(domain.surfaces)), np.full(n, -1)
+    np.minimum.at(lowest, at, surface)
+    np.maximum.at(highest, at, surface)
+    return np.flatnonzero((least < _PEAKED) & (lowest == highest))
+
+
+def _faces_at(domain: Plc, face: np.ndarray, points: np.ndarray) -> list[int]:
+    """A face around each point, (k,)."""
+    out = np.full(len(domain.points), -1)
+    out[domain.facets.ravel()] = np.repeat(face, 3)
+    return [int(f) for f in out[points]]
 
 
 @dataclass(frozen=True, eq=False)
