@@ -16,6 +16,7 @@ from typing import Any
 
 import numpy as np
 import space_peers as peers
+from space_solids import MODELS
 
 import csgmesh as cm
 
@@ -103,32 +104,16 @@ def memory(size: float) -> Row:
     return {"size": size, "cells": mesh.n_cells, "bytes_per_cell": (peak - held) / mesh.n_cells}
 
 
-def evaluation(deviation: float) -> Row:
-    """Evaluation of 100 balls beside manifold3d's own boolean of as many facets."""
-    import manifold3d
-
-    rng = np.random.default_rng(3)
-    center = (rng.random((100, 3)) * 4).tolist()
-    radius = (0.3 + 0.2 * rng.random(100)).tolist()
-    shape = cm.union([cm.Ball(tuple(c), r) for c, r in zip(center, radius, strict=True)])
+def evaluation(model: str, share: float) -> Row:
+    """Evaluation of a model beside manifold3d's own boolean of as many facets."""
+    wanted = MODELS[model](share)
     cm.evaluate(cm.Ball((0, 0, 0), 1) | cm.Ball((0.5, 0, 0), 1))
-    row, plc = timed(lambda: cm.evaluate(shape, deviation=deviation), 1)
-
-    def alone(finer: float) -> int:
-        balls = [
-            manifold3d.Manifold.sphere(r, int(finer * np.pi / np.arccos(1 - deviation / r)))
-            for r in radius
-        ]
-        balls = [ball.translate(c) for ball, c in zip(balls, center, strict=True)]
-        return int(manifold3d.Manifold.batch_boolean(balls, manifold3d.OpType.Add).num_tri())
-
-    # Its spheres have fewer facets for a deviation than ours: it gets as many as we have.
-    finer = float(np.sqrt(plc.n_facets / alone(1.0)))
-    theirs, facets = timed(lambda: alone(finer), 1)
+    row, plc = timed(lambda: cm.evaluate(wanted.shape, deviation=wanted.deviation), 1)
+    theirs, facets = timed(lambda: wanted.manifold3d().num_tri(), 1)
     return row | {
-        "leaves": 100,
+        "leaves": wanted.leaves,
         "facets": plc.n_facets,
-        "manifold3d_facets": facets,
+        "manifold3d_facets": int(facets),
         "manifold3d_seconds": theirs["seconds"],
     }
 

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from csgmesh.boundary.facets import Facets
+from csgmesh.boundary.neighbours import in_use
 from csgmesh.boundary.touching import Sheets
 from csgmesh.csg.primitives.half_space import HalfSpace
 from csgmesh.csg.program import Code, Leaf
@@ -187,7 +188,7 @@ def canonical(
 
     What belongs to triangles, a row each, comes back in their order.
     """
-    points, triangles = _in_use(points, triangles)
+    points, triangles = in_use(points, triangles)
     order = np.lexsort(points.T[::-1])
     rank = np.empty(len(points), np.int64)
     rank[order] = np.arange(len(points))
@@ -197,11 +198,3 @@ def canonical(
     keys = [key for b in belongings for key in (b.T if b.ndim > 1 else b[None])]
     rows = np.lexsort((*triangles.T[::-1], *keys))
     return points[order], triangles[rows], *(b[rows] for b in belongings)
-
-
-def _in_use(points: np.ndarray, triangles: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Points that triangles have, and these with the points' new numbers."""
-    used = np.zeros(len(points), bool)
-    used[triangles] = True
-    number = np.cumsum(used) - 1
-    return points[used], number[triangles]

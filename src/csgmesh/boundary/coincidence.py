@@ -69,7 +69,7 @@ def coincidence(surfaces: Surfaces, snap: float) -> Coincidence:
     _, label = components(n, a, b)
     _, first = np.unique(label, return_index=True)
     of = first[label]
-    return Coincidence(of, _reaching(surfaces, of, is_quadric))
+    return Coincidence(of, _covering_classes(surfaces, of, is_quadric))
 
 
 def _same_planes(surfaces: Surfaces, snap: float) -> np.ndarray:
@@ -152,7 +152,7 @@ def _squares(rows: np.ndarray, plus: dict, minus: tuple) -> np.ndarray:
     return out
 
 
-def _reaching(surfaces: Surfaces, of: np.ndarray, is_quadric: np.ndarray) -> Surfaces:
+def _covering_classes(surfaces: Surfaces, of: np.ndarray, is_quadric: np.ndarray) -> Surfaces:
     """Surfaces, those that stand for a class of quadrics as long as all of it."""
     count = np.bincount(of, minlength=len(of))
     crowded = np.flatnonzero(is_quadric & (count > 1) & (of == np.arange(len(of))))

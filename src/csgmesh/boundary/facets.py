@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from csgmesh.boundary.neighbours import in_use
 from csgmesh.boundary.planar import evaluate_plane
 from csgmesh.boundary.rings import rings
 from csgmesh.csg.primitives.half_space import HalfSpace
@@ -340,12 +341,5 @@ def _triangulated(loops: list[np.ndarray]) -> np.ndarray:
 
 
 def _compact(body: Facets) -> Facets:
-    used, triangles = np.unique(body.triangles, return_inverse=True)
-    return Facets(
-        body.points[used],
-        triangles.reshape(-1, 3),
-        body.surface,
-        body.surfaces,
-        body.parts,
-        body.around,
-    )
+    points, triangles = in_use(body.points, body.triangles)
+    return Facets(points, triangles, body.surface, body.surfaces, body.parts, body.around)

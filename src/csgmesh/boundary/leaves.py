@@ -90,7 +90,8 @@ def leaf_bodies(
         In local coordinates.
     """
     allowed = [_allowed(leaf, deviation) for leaf in leaves]
-    bodies = [frame.local(_facets(*row, frame)) for row in zip(leaves, allowed, strict=True)]
+    known: dict[bytes, Facets] = {}
+    bodies = [frame.local(_facets(*row, frame, known)) for row in zip(leaves, allowed, strict=True)]
     surfaces = Surfaces.concatenate([body.surfaces for body in bodies])
     leaf_of = np.repeat(np.arange(len(bodies)), [len(body.surfaces) for body in bodies])
     classes = coincidence(surfaces, snap)
@@ -103,7 +104,9 @@ def leaf_bodies(
             finest = min(allowed[k] for k in own)
             around = max(bodies[k].around for k in own)
             for k in own:
-                bodies[k] = frame.local(_facets(leaves[k], finest, frame, around, upright=True))
+                bodies[k] = frame.local(
+                    _facets(leaves[k], finest, frame, known, around, upright=True)
+                )
     return _together(bodies, leaf_of, shared, snap)
 
 
@@ -143,7 +146,13 @@ def _allowed(leaf: Leaf, deviation: float | None) -> float:
 
 
 def _facets(
-    leaf: Leaf, deviation: float, frame: Frame, around: int = 0, *, upright: bool = False
+    leaf: Leaf,
+    deviation: float,
+    frame: Frame,
+    known: dict[bytes, Facets],
+    around: int = 0,
+    *,
+    upright: bool = False,
 ) -> Facets:
     """Facets of a leaf in user coordinates; `upright` if cut at angles that others share."""
     primitive = leaf.primitive
@@ -155,8 +164,31 @@ def _facets(
         body = _upright(body, leaf.matrix)
     # Facets are made before the leaf is placed, where lengths differ by the placement's stretch.
     stretch = float(np.linalg.norm(leaf.matrix, 2))
-    own = facets(body, primitive.parts, deviation / stretch, around)
+    deviation /= stretch
+    if isinstance(body, Revolution) and isinstance(body.profile, Profile):
+        own = _turned_alike(body, body.profile, primitive.parts, deviation, around, known)
+    else:
+        own = facets(body, primitive.parts, deviation, around)
     return own.transformed(leaf.matrix, leaf.offset)
+
+
+def _turned_alike(
+    body: Revolution,
+    profile: Profile,
+    part_names: tuple[str, ...],
+    deviation: float,
+    around: int,
+    known: dict[bytes, Facets],
+) -> Facets:
+    """Facets of a revolution, made once for all that differ in nothing but their placement."""
+    curves = profile.curves
+    parts = (curves.kind, curves.data, curves.interval, profile.part)
+    numbers = np.array([body.angle, deviation, around])
+    key = b"|".join(a.tobytes() for a in (*parts, numbers))
+    if key not in known:
+        unplaced = replace(body, matrix=np.eye(3), offset=np.zeros(3))
+        known[key] = facets(unplaced, part_names, deviation, around)
+    return known[key].transformed(body.matrix, body.offset)
 
 
 def _upright(body: Revolution, placement: np.ndarray) -> Revolution:

@@ -99,6 +99,14 @@ def ordered(rows: np.ndarray, n: int) -> np.ndarray:
     return np.lexsort(rows.T[::-1])
 
 
+def in_use(points: np.ndarray, triangles: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Points that triangles have, and these with the points' new numbers."""
+    used = np.zeros(len(points), bool)
+    used[triangles] = True
+    number = np.cumsum(used) - 1
+    return points[used], number[triangles]
+
+
 def _cells(
     lo: np.ndarray, hi: np.ndarray, which: np.ndarray, width: float
 ) -> tuple[np.ndarray, np.ndarray]:

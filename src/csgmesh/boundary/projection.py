@@ -61,7 +61,7 @@ def project_vertices(
                 break
             at, rows = at[going], rows[going]
     several = count[vertex] > 1
-    return out, _reaching(surfaces, longer, on[several], out[vertex[several]])
+    return out, _prolonged(surfaces, longer, on[several], out[vertex[several]])
 
 
 def _continued(surfaces: Surfaces) -> Surfaces:
@@ -95,7 +95,9 @@ def _continued(surfaces: Surfaces) -> Surfaces:
     return _with_interval(surfaces, interval)
 
 
-def _reaching(surfaces: Surfaces, longer: Surfaces, on: np.ndarray, points: np.ndarray) -> Surfaces:
+def _prolonged(
+    surfaces: Surfaces, longer: Surfaces, on: np.ndarray, points: np.ndarray
+) -> Surfaces:
     """Surfaces as long as vertices on the longer ones need."""
     bent = np.flatnonzero(surfaces.kind[on] != PLANE)
     on, points = on[bent], points[bent]
