@@ -36,10 +36,10 @@ LIMIT = 90.0
 UNIFORM = {
     "ours": 15.5,
     "gmsh_hxt": 7.1,
-    "gmsh_delaunay": 7.1,
-    "rapidmesh": 7.1,
-    "tetgen": 15.5,
-    "netgen": 7.1,
+    "gmsh_delaunay": 8.1,
+    "rapidmesh": 10.0,
+    "tetgen": 20.0,
+    "netgen": 6.5,
 }
 #: Peers without a bar are slow enough to be measured once.
 REPEATED = ("ours", "gmsh_hxt")
