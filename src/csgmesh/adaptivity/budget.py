@@ -93,6 +93,8 @@ def generate_to_budget(
     if not 0 < tolerance < 1:
         raise InputError(f"tolerance must be between 0 and 1; got {tolerance!r}")
     domain = evaluate(shape, deviation=deviation, snap=snap)
+    if domain.dim != 2:
+        raise InputError("generate_to_budget meshes domains in the plane; this one lies in space")
     search = _Search(domain, default_mesher(mesher), 1.0 if size is None else size, keep, progress)
     return search.run(int(cells), max(tolerance * cells, _WHOLE))
 

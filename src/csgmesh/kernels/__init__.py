@@ -55,6 +55,7 @@ _HOME = {
     "lowest_sources": "sizes.sources",
     "limit_growth": "sizes.gradation",
     "first_met": "sizes.rays",
+    "lowest_facets": "sizes.facet_sources",
     "flip_edges": "delaunay_flips.flips",
     "number_edges": "refine_cells.edges",
     "cells_of_edges": "refine_cells.edges",

@@ -7,7 +7,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from csgmesh.size.field import SizeField, Source, UniformSize, positive, require_plane
+from csgmesh.domain.plc import Plc
+from csgmesh.size.bending import curvature_radii
+from csgmesh.size.facet_sources import GradedFacets
+from csgmesh.size.field import SizeField, Source, UniformSize, positive
 from csgmesh.size.near import GRADATION
 from csgmesh.size.pieces import FINER, boundary_pieces, is_bent
 from csgmesh.size.sources import GradedSources
@@ -21,7 +24,8 @@ class CurvatureSize(SizeField):
     """As many edges as wanted on a full circle of the boundary's curvature, growing away from it.
 
     On a curve of radius of curvature r the size is ``2 π r / points_per_circle``. Straight segments
-    ask for nothing; where there are no curves the size is the domain's diagonal.
+    ask for nothing; where there are no curves the size is the domain's diagonal. In space r is the
+    smallest radius of curvature of the exact surface, seen in the middle of each facet.
 
     Parameters
     ----------
@@ -58,13 +62,23 @@ class CurvatureSize(SizeField):
 
     def bind(self, domain: Pslg) -> Source:
         """The size by distance from curves."""
-        require_plane(domain, "CurvatureSize")
+        if isinstance(domain, Plc):
+            return self._in_space(domain)
         bent = np.flatnonzero(is_bent(domain))
         if not len(bent):
             return UniformSize(domain.diagonal)
         radius = np.minimum(_radii(domain, bent).ravel(), domain.diagonal)
         value = 2 * np.pi * radius / self.points_per_circle
         return GradedSources(boundary_pieces(domain, bent)[0], value, 0.0, self.gradation)
+
+    def _in_space(self, domain: Plc) -> Source:
+        radius = curvature_radii(domain)
+        bent = np.flatnonzero(np.isfinite(radius))
+        if not len(bent):
+            return UniformSize(domain.diagonal)
+        value = 2 * np.pi * np.minimum(radius[bent], domain.diagonal) / self.points_per_circle
+        facets = domain.points[domain.facets[bent]]
+        return GradedFacets(facets, value, 0.0, self.gradation)
 
 
 def _radii(domain: Pslg, bent: np.ndarray) -> np.ndarray:

@@ -5,13 +5,24 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from csgmesh.size.field import SizeField, Source, UniformSize, positive, require_plane
+import numpy as np
+
+from csgmesh.domain.plc import Plc
+from csgmesh.size.facet_sources import GradedFacets
+from csgmesh.size.field import SizeField, Source, UniformSize, positive
 from csgmesh.size.gaps import gaps
 from csgmesh.size.near import GRADATION
 from csgmesh.size.sources import GradedSources
+from csgmesh.size.thickness import walls
 
 if TYPE_CHECKING:
     from csgmesh.domain.pslg import Pslg
+
+
+#: In space: longest piece of a boundary looked at first, and the narrowest gap that counts, as
+#: shares of the diagonal.
+_SPACING = 0.05
+_LEAST = 1e-3
 
 
 @dataclass(frozen=True)
@@ -24,6 +35,10 @@ class FeatureSize(SizeField):
     small their angle (Ruppert counts pairs that are not incident), nor do neighbouring chords of a
     curve make one. In each gap, and in the disk, the size is the width divided by `cells`; from
     there it grows. Where there is no gap at all the size is the domain's diagonal.
+
+    In space the width is the distance along the normal of a facet to what faces it, if faces open
+    by less than 45 degrees there, and by less than half of the angle in which they meet in an edge.
+    Gaps below a thousandth of the diagonal count as that wide.
 
     Parameters
     ----------
@@ -63,8 +78,17 @@ class FeatureSize(SizeField):
 
     def bind(self, domain: Pslg) -> Source:
         """The size by distance from the gaps."""
-        require_plane(domain, "FeatureSize")
+        if isinstance(domain, Plc):
+            return self._in_space(domain)
         bridges, widths = gaps(domain)
         if not len(bridges):
             return UniformSize(domain.diagonal)
         return GradedSources(bridges, widths / self.cells, 0.5 * widths, self.gradation)
+
+    def _in_space(self, domain: Plc) -> Source:
+        diagonal = domain.diagonal
+        found = walls(domain, lambda p: np.full(len(p), diagonal), _SPACING, 1.0, _LEAST * diagonal)
+        if not len(found.width):
+            return UniformSize(diagonal)
+        width = np.maximum(found.width, _LEAST * diagonal)
+        return GradedFacets(found.triangles, width / self.cells, 0.5 * width, self.gradation)

@@ -96,7 +96,7 @@ class UniformSize(SizeField):
 
 
 def require_plane(domain: Pslg, field: str) -> None:
-    """Refuse to bind a field that only knows curves to a domain in space.
+    """Refuse to bind a field that knows the plane alone to a domain in space.
 
     Raises
     ------
@@ -105,8 +105,9 @@ def require_plane(domain: Pslg, field: str) -> None:
     """
     if domain.dim != 2:
         raise SizeError(
-            f"{field} needs a domain in the plane; in space sizes are a number, a mapping of names "
-            "to numbers, or a callable of points (n, 3)"
+            f"{field} needs a domain in the plane; in space sizes are a number, a mapping of "
+            "names, a callable of points (n, 3), a NearSize, RegionSize, CurvatureSize or "
+            "FeatureSize"
         )
 
 

@@ -10,11 +10,11 @@ import numpy as np
 
 from csgmesh.errors import SizeError
 from csgmesh.size.combinations import as_field
+from csgmesh.size.facet_sources import graded
 from csgmesh.size.field import SizeField, Source
 from csgmesh.size.near import GRADATION, marked_pieces
 from csgmesh.size.region import region_pieces, regions_at
 from csgmesh.size.resolve import evaluate, meaning
-from csgmesh.size.sources import GradedSources
 
 if TYPE_CHECKING:
     from csgmesh.domain.pslg import Pslg
@@ -66,7 +66,7 @@ class NamedSizes(SizeField):
         """The sizes by place."""
         default: Source | None = None
         regions: list[tuple[np.ndarray, Source]] = []
-        pieces, values = [np.zeros((0, 2, 2))], [np.zeros(0)]
+        pieces, values = [np.zeros((0, domain.dim, domain.dim))], [np.zeros(0)]
         for name, field in dict(self.sizes).items():
             source = field.bind(domain)
             if name == "default":
@@ -78,13 +78,13 @@ class NamedSizes(SizeField):
                 regions.append((numbers, source))
                 around = np.concatenate([around, region_pieces(domain, numbers)])
             pieces.append(around)
-            ends = evaluate(source, around.reshape(-1, 2)).reshape(-1, 2)
+            ends = evaluate(source, around.reshape(-1, domain.dim)).reshape(len(around), -1)
             values.append(ends.min(axis=1))
-        graded = None
+        away = None
         if sum(map(len, pieces)):
             all_pieces, all_values = np.concatenate(pieces), np.concatenate(values)
-            graded = GradedSources(all_pieces, all_values, 0.0, self.gradation)
-        return _Bound(domain, default, tuple(regions), graded)
+            away = graded(all_pieces, all_values, 0.0, self.gradation)
+        return _Bound(domain, default, tuple(regions), away)
 
 
 @dataclass(frozen=True, eq=False)
@@ -94,7 +94,7 @@ class _Bound:
     domain: Pslg
     default: Source | None
     regions: tuple[tuple[np.ndarray, Source], ...]
-    graded: GradedSources | None
+    away: Source | None
 
     def __call__(self, points: np.ndarray) -> np.ndarray:
         largest = self.domain.diagonal
@@ -106,4 +106,4 @@ class _Bound:
                 at = np.flatnonzero(np.isin(region, numbers))
                 said[at] = np.minimum(said[at], source(points[at]))
             value = np.where(np.isfinite(said), said, value)
-        return value if self.graded is None else np.minimum(value, self.graded(points))
+        return value if self.away is None else np.minimum(value, self.away(points))

@@ -9,10 +9,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from csgmesh.domain.names import find_markers
+from csgmesh.domain.plc import Plc
 from csgmesh.errors import SizeError
-from csgmesh.size.field import SizeField, Source, positive, require_plane
+from csgmesh.size.facet_sources import graded
+from csgmesh.size.field import SizeField, Source, positive
 from csgmesh.size.pieces import boundary_pieces
-from csgmesh.size.sources import GradedSources
 
 if TYPE_CHECKING:
     from csgmesh.domain.pslg import Pslg
@@ -25,7 +26,8 @@ GRADATION = 0.3
 class NearSize(SizeField):
     """A size on named boundaries, growing with the distance from them.
 
-    Distances are from chords a sixteenth of `evaluate`'s deviation off the exact curves.
+    Distances are from chords a sixteenth of `evaluate`'s deviation off the exact curves, in space
+    from facets within its deviation of the exact surfaces.
 
     Parameters
     ----------
@@ -71,18 +73,19 @@ class NearSize(SizeField):
 
     def bind(self, domain: Pslg) -> Source:
         """The size by distance from the boundaries of these names."""
-        require_plane(domain, "NearSize")
         found = [find_markers(name, domain.boundary_names) for name in self.names]
         markers = np.unique(np.concatenate(found))
         pieces = marked_pieces(domain, markers)
         if not len(pieces):
             listed = ", ".join(map(repr, self.names))
-            raise SizeError(f"NearSize: no segment and no point of the domain is named {listed}")
-        return GradedSources(pieces, np.full(len(pieces), self.size), self.within, self.gradation)
+            raise SizeError(f"NearSize: no part and no point of the domain is named {listed}")
+        return graded(pieces, np.full(len(pieces), self.size), self.within, self.gradation)
 
 
-def marked_pieces(domain: Pslg, markers: np.ndarray) -> np.ndarray:
-    """Pieces (k, 2, 2) of segments and points that carry one of some markers."""
+def marked_pieces(domain: Pslg | Plc, markers: np.ndarray) -> np.ndarray:
+    """What carries one of some markers: pieces (k, 2, 2) of segments and points, or facets."""
+    if isinstance(domain, Plc):
+        return domain.points[domain.facets[np.isin(domain.facet_marker, markers)]]
     segments = np.flatnonzero(np.isin(domain.segment_marker, markers))
     probes = domain.points[np.isin(domain.point_marker, markers) & (domain.point_marker >= 0)]
     pieces = boundary_pieces(domain, segments)[0]

@@ -9,11 +9,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from csgmesh.domain.names import find_names
+from csgmesh.domain.plc import Plc
 from csgmesh.errors import SizeError
-from csgmesh.size.field import SizeField, Source, positive, require_plane
+from csgmesh.size.facet_sources import graded
+from csgmesh.size.field import SizeField, Source, positive
 from csgmesh.size.near import GRADATION
 from csgmesh.size.pieces import boundary_pieces
-from csgmesh.size.sources import GradedSources
 
 if TYPE_CHECKING:
     from csgmesh.domain.pslg import Pslg
@@ -63,7 +64,6 @@ class RegionSize(SizeField):
 
     def bind(self, domain: Pslg) -> Source:
         """The size by region, and by distance from the regions' boundaries."""
-        require_plane(domain, "RegionSize")
         pieces, values = [], []
         inside = np.full(len(domain.region_names) + 1, np.inf)
         for name, size in dict(self.sizes).items():
@@ -73,18 +73,21 @@ class RegionSize(SizeField):
             around = region_pieces(domain, np.array(numbers))
             pieces.append(around)
             values.append(np.full(len(around), size))
-        away = GradedSources(np.concatenate(pieces), np.concatenate(values), 0.0, self.gradation)
+        away = graded(np.concatenate(pieces), np.concatenate(values), 0.0, self.gradation)
         # The last entry, that of number -1, is for points outside the domain.
         return lambda points: np.minimum(away(points), inside[regions_at(domain, points)])
 
 
-def region_pieces(domain: Pslg, regions: np.ndarray) -> np.ndarray:
-    """Pieces (k, 2, 2) of all segments with one of the regions on a side."""
+def region_pieces(domain: Pslg | Plc, regions: np.ndarray) -> np.ndarray:
+    """Pieces (k, 2, 2) of all segments, or all facets, with one of the regions on a side."""
+    if isinstance(domain, Plc):
+        beside = np.isin(domain.facet_region, regions).any(axis=1)
+        return domain.points[domain.facets[beside]]
     beside = np.isin(domain.segment_region, regions).any(axis=1)
     return boundary_pieces(domain, np.flatnonzero(beside))[0]
 
 
-def regions_at(domain: Pslg, points: np.ndarray) -> np.ndarray:
+def regions_at(domain: Pslg | Plc, points: np.ndarray) -> np.ndarray:
     """Region of each point, -1 outside."""
     if domain.oracle is None:
         raise SizeError("sizes by region need a domain that knows the regions of points")
