@@ -27,7 +27,7 @@ from csgmesh.meshers.workspace import Progress
 _ATTEMPTS = ((1.0, 0.5), (1.0, 0.2), (0.7, 0.5), (0.5, 0.5), (0.5, 0.2))
 
 #: With a smallest scaled Jacobian above this the first attempt is good enough.
-_GOOD = 0.2
+_GOOD = 0.15
 
 
 def hexahedral_mesh(
