@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
+#: Rows of triangles, and the corners of those that take their place.
+_Split = tuple[np.ndarray, list[tuple[np.ndarray, np.ndarray, np.ndarray]]]
+
 
 def halved(
     points: np.ndarray,
@@ -40,40 +43,41 @@ def halved(
     >>> halved(square, two, np.array([[0, 2]]), np.array([4]), none, none)[0].tolist()
     [[4, 0, 1], [4, 1, 2], [4, 2, 3], [4, 3, 0]]
     """
-    n = len(points)
-    middle = _middles(triangles, edge, vertex, n)
+    middle = _middles(triangles, edge, vertex, len(points))
     count = (middle >= 0).sum(axis=1)
     at_point = np.full(len(triangles), -1)
     at_point[facet] = inner
     at_point[count > 0] = -1
-    whole = np.flatnonzero((count == 0) & (at_point < 0))
-    parts, parents = [triangles[whole]], [whole]
-
-    def add(rows: np.ndarray, *corners: tuple[np.ndarray, np.ndarray, np.ndarray]) -> None:
-        parts.append(np.stack([np.column_stack(c) for c in corners], axis=1).reshape(-1, 3))
-        parents.append(np.repeat(rows, len(corners)))
-
+    rows = np.flatnonzero((count == 0) & (at_point < 0))
+    parts, parents = [triangles[rows]], [rows]
     rows = np.flatnonzero(at_point >= 0)
     (a, b, c), p = triangles[rows].T, at_point[rows]
-    add(rows, (a, b, p), (b, c, p), (c, a, p))
+    split = [(rows, [(a, b, p), (b, c, p), (c, a, p)])]
     # Turned so that the edge that is split alone, or not split alone, comes last.
     rows = np.flatnonzero(count == 1)
     (a, b, c), (_, _, p) = _turned(triangles, middle, rows, middle[rows] >= 0)
-    add(rows, (p, a, b), (p, b, c))
+    split.append((rows, [(p, a, b), (p, b, c)]))
     rows = np.flatnonzero(count == 2)
-    (a, b, c), (p, q, _) = _turned(triangles, middle, rows, middle[rows] < 0)
-    add(rows, (p, b, q))
-    short = _nearer(points, (a, q), (p, c))
-    for chosen, one, two in ((short, (a, p, q), (a, q, c)), (~short, (a, p, c), (p, q, c))):
-        add(
-            rows[chosen],
-            (one[0][chosen], one[1][chosen], one[2][chosen]),
-            (two[0][chosen], two[1][chosen], two[2][chosen]),
-        )
+    split += _at_two_edges(points, rows, *_turned(triangles, middle, rows, middle[rows] < 0))
     rows = np.flatnonzero(count == 3)
     (a, b, c), (p, q, r) = triangles[rows].T, middle[rows].T
-    add(rows, (a, p, r), (p, b, q), (r, q, c), (p, q, r))
+    split.append((rows, [(a, p, r), (p, b, q), (r, q, c), (p, q, r)]))
+    for rows, corners in split:
+        parts.append(np.stack([np.column_stack(c) for c in corners], axis=1).reshape(-1, 3))
+        parents.append(np.repeat(rows, len(corners)))
     return np.concatenate(parts), np.concatenate(parents)
+
+
+def _at_two_edges(
+    points: np.ndarray, rows: np.ndarray, corners: np.ndarray, middles: np.ndarray
+) -> list[_Split]:
+    """Triangles whose last edge alone is whole: a corner, and two along the shorter diagonal."""
+    (a, b, c), (p, q, _) = corners, middles
+    short = _nearer(points, (a, q), (p, c))
+    out: list[_Split] = [(rows, [(p, b, q)])]
+    for chosen, pair in ((short, [(a, p, q), (a, q, c)]), (~short, [(a, p, c), (p, q, c)])):
+        out.append((rows[chosen], [(x[chosen], y[chosen], z[chosen]) for x, y, z in pair]))
+    return out
 
 
 def _middles(triangles: np.ndarray, edge: np.ndarray, vertex: np.ndarray, n: int) -> np.ndarray:

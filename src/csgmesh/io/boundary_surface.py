@@ -211,23 +211,13 @@ def to_pyvista(mesh: Mesh) -> Any:
         raise InputError(
             "to_pyvista needs the library PyVista, which is not installed: pip install pyvista"
         ) from None
-    from csgmesh.io.vtk_kinds import VTK_TYPE, vtk_order
     from csgmesh.mesh.lagrange import EQUISPACED
     from csgmesh.mesh.nodes import with_nodes
 
     mesh = with_nodes(mesh, EQUISPACED)
-    mesh = with_facets(mesh) if is_surface(mesh) else mesh
     is_skin = is_surface(mesh)
-    blocks = [*mesh.cells.items()] if not is_skin else []
-    connectivity, types = [], []
-    for kind, rows in (*blocks, *mesh.facets.items()):
-        order = vtk_order(kind)
-        rows = rows if order is None else rows[:, order]
-        connectivity.append(np.column_stack([np.full(len(rows), rows.shape[1]), rows]).ravel())
-        types.append(np.full(len(rows), VTK_TYPE[kind], np.uint8))
-    points = np.zeros((mesh.n_points, 3))
-    points[:, : mesh.dim] = mesh.points
-    grid = pyvista.UnstructuredGrid(np.concatenate(connectivity), np.concatenate(types), points)
+    mesh = with_facets(mesh) if is_skin else mesh
+    grid = pyvista.UnstructuredGrid(*_vtk_cells(mesh, {} if is_skin else dict(mesh.cells)))
     if is_skin:
         region = np.concatenate([sides[:, 0] for sides in mesh.facet_region.values()])
         marker = np.concatenate([*mesh.facet_marker.values()])
@@ -242,3 +232,20 @@ def to_pyvista(mesh: Mesh) -> Any:
     grid.field_data["region_names"] = regions[:-1]
     grid.field_data["boundary_names"] = joined[:-1]
     return grid
+
+
+def _vtk_cells(
+    mesh: Mesh, cells: dict[str, np.ndarray]
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Cells, then facets, as VTK wants them: connectivity, types and points in space."""
+    from csgmesh.io.vtk_kinds import VTK_TYPE, vtk_order
+
+    connectivity, types = [], []
+    for kind, rows in (*cells.items(), *mesh.facets.items()):
+        order = vtk_order(kind)
+        rows = rows if order is None else rows[:, order]
+        connectivity.append(np.column_stack([np.full(len(rows), rows.shape[1]), rows]).ravel())
+        types.append(np.full(len(rows), VTK_TYPE[kind], np.uint8))
+    points = np.zeros((mesh.n_points, 3))
+    points[:, : mesh.dim] = mesh.points
+    return np.concatenate(connectivity), np.concatenate(types), points
