@@ -14,7 +14,7 @@ import numpy as np
 
 from csgmesh.boundary.facets import Facets
 from csgmesh.boundary.neighbours import in_use
-from csgmesh.boundary.touching import Sheets
+from csgmesh.boundary.sheet_table import Sheets
 from csgmesh.csg.primitives.half_space import HalfSpace
 from csgmesh.csg.program import Code, Leaf
 from csgmesh.errors import EvaluationError, UnboundedDomainError

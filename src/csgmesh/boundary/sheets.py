@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from csgmesh.boundary.neighbours import distinct, ordered, overlapping_pairs
-from csgmesh.boundary.touching import Sheets
+from csgmesh.boundary.sheet_table import Sheets
 from csgmesh.csg.program import Leaf
 
 #: The layer of facets that only bring names.

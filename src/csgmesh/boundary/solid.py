@@ -23,10 +23,11 @@ from csgmesh.boundary.coincidence import coincidence
 from csgmesh.boundary.facets import Facets
 from csgmesh.boundary.leaves import Frame, frame_of, leaf_bodies
 from csgmesh.boundary.projection import project_vertices
+from csgmesh.boundary.sheet_table import Sheets
 from csgmesh.boundary.sheets import joined, with_rivals
 from csgmesh.boundary.shells import shells
 from csgmesh.boundary.sweeps import swept_domain
-from csgmesh.boundary.touching import Sheets, settle
+from csgmesh.boundary.touching import settle
 from csgmesh.boundary.untangling import untangled
 from csgmesh.csg import Embed
 from csgmesh.csg.primitives.half_space import HalfSpace
