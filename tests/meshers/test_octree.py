@@ -146,3 +146,11 @@ def test_hexahedra_by_the_same_mesher() -> None:
         )
     with pytest.raises(cm.SizeError):
         cm.generate(plate, cm.Octree(cells="hexahedron"), size=0)
+
+
+def test_a_size_along_a_part_is_asked_for_there_alone() -> None:
+    part = cm.Box((0, 0, 0), (2, 1, 1)) | cm.Cylinder((1, 0.5, 1), (1, 0.5, 2), 0.3, name="knob")
+    mesh = cm.generate(
+        part, cm.Octree(), {"default": 0.4, "knob.*": lambda p: 0.2 * (p[:, 2] - 0.5)}
+    )
+    assert cm.check(mesh, part).ok

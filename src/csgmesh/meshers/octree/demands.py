@@ -149,7 +149,7 @@ class SizeDemands:
         self._demand(tree, shape, places, self.size, done, 0.0, unmarked, value)
         for on, source in self.named:
             met = self._met(tree, places, on)
-            here = evaluate(source, (lo + 0.5 * extent)[met])
+            here = self.ask_named(on, source, (lo + 0.5 * extent)[met])
             value[met] = np.minimum(value[met], here)
         return value, (value >= asked).astype(np.uint8)
 
@@ -189,13 +189,17 @@ class SizeDemands:
         met = self._met(tree, places, on)
         lo, extent = (a[met] for a in tree.boxes())
         where = lo[:, None] + _PLACES * extent[:, None]
-        value = self.ask_named(source, where.reshape(-1, 3)).reshape(len(met), -1)
+        value = self.ask_named(on, source, where.reshape(-1, 3)).reshape(len(met), -1)
         marked[met[extent[:, 0] > LEAF * value.min(axis=1)]] = 1
 
-    @staticmethod
-    def ask_named(source: Source, points: np.ndarray) -> np.ndarray:
-        """A size on a part of the boundary, checked."""
-        return evaluate(source, points)
+    def ask_named(self, on: np.ndarray, source: Source, points: np.ndarray) -> np.ndarray:
+        """A size on a part of the boundary, checked.
+
+        Leaves reach beyond the part, where its size need not be one: such points are moved into the
+        part's box first.
+        """
+        corners = self.triangles[on].reshape(-1, 3)
+        return evaluate(source, np.clip(points, corners.min(axis=0), corners.max(axis=0)))
 
     def _met(self, tree: LinearTree, places: np.ndarray, on: np.ndarray) -> np.ndarray:
         """Leaves that some of the triangles meet."""
