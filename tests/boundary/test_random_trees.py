@@ -84,7 +84,11 @@ def examine(seed: int) -> None:
     assert plc.volumes()[0] == pytest.approx(share * box, abs=slack)
 
 
-@pytest.mark.parametrize("seed", range(50))
+#: Trees with outlines that are diagonals of other sheets, or with corners that only facets have.
+HARD = (515, 774, 855, 949)
+
+
+@pytest.mark.parametrize("seed", [*range(50), *HARD])
 def test_random_trees(seed: int) -> None:
     examine(seed)
 

@@ -121,7 +121,10 @@ def _caps(
 def _diagonals(
     points: np.ndarray, triangles: np.ndarray, sheet: np.ndarray, wanted: np.ndarray, snap: float
 ) -> np.ndarray:
-    """Those of the wanted edges, ``low * n + high``, that lie inside flat parts of a sheet."""
+    """Those of the wanted edges, ``low * n + high``, that all sheets have inside flat parts.
+
+    What is a diagonal of one sheet may be on the outline of another.
+    """
     n = len(points)
     head = np.roll(triangles, -1, axis=1)
     key = np.minimum(triangles, head) * n + np.maximum(triangles, head)
@@ -142,7 +145,10 @@ def _diagonals(
         tip = points[triangles.ravel()[b - b % 3 + (b + 2) % 3]]
         height = ((tip - corner[a // 3, 0]) * normal[a // 3]).sum(axis=1)
         level &= np.abs(height) <= 2.0 * snap * size[a // 3]
-    return key[one[level]]
+    inside = np.concatenate([one[level], two[level]])
+    outline = np.ones(len(key), bool)
+    outline[inside] = False
+    return np.setdiff1d(key[inside], key[outline])
 
 
 def _crossings(
