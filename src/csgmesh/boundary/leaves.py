@@ -33,6 +33,11 @@ _REACH = 4.0
 #: Axes differ by less, as a share of their length, if only rounding made them differ.
 _ROUND = 1e-12
 
+#: Share of the deviation that leaves keep near places where facets are too coarse, and how far off
+#: such a place their surfaces may be, in deviations.
+_FINER = 1.0 / 16.0
+_BESIDE = 8.0
+
 
 @dataclass(frozen=True, eq=False)
 class Frame:
@@ -73,7 +78,11 @@ def _meeting_points(planes: Sequence[tuple[np.ndarray, np.ndarray]]) -> list[np.
 
 
 def leaf_bodies(
-    leaves: Sequence[Leaf], frame: Frame, deviation: float | None, snap: float
+    leaves: Sequence[Leaf],
+    frame: Frame,
+    deviation: float | None,
+    snap: float,
+    finer: Sequence[np.ndarray] = (),
 ) -> list[Facets]:
     """Facets of all leaves in local coordinates.
 
@@ -88,10 +97,16 @@ def leaf_bodies(
         In user coordinates; by default a share of each leaf's extent.
     snap : float
         In local coordinates.
+    finer : sequence of (k, 3) float64
+        Places in user coordinates near which leaves get a smaller deviation, for each array.
     """
     allowed = [_allowed(leaf, deviation) for leaf in leaves]
     known: dict[bytes, Facets] = {}
     bodies = [frame.local(_facets(*row, frame, known)) for row in zip(leaves, allowed, strict=True)]
+    for places in finer:
+        for k in _beside(bodies, (places - frame.centre) / frame.scale, allowed, frame):
+            allowed[k] *= _FINER
+            bodies[k] = frame.local(_facets(leaves[k], allowed[k], frame, known))
     surfaces = Surfaces.concatenate([body.surfaces for body in bodies])
     leaf_of = np.repeat(np.arange(len(bodies)), [len(body.surfaces) for body in bodies])
     classes = coincidence(surfaces, snap)
@@ -135,6 +150,20 @@ def _together(
         points = bodies[k].points.copy()
         points[number[own]] = target[own]
         out[k] = replace(bodies[k], points=points)
+    return out
+
+
+def _beside(
+    bodies: Sequence[Facets], places: np.ndarray, allowed: Sequence[float], frame: Frame
+) -> list[int]:
+    """Bodies whose curved surfaces run by some of the places (k, 3), in local coordinates."""
+    out = []
+    for k, body in enumerate(bodies):
+        bent = np.flatnonzero(body.surfaces.kind != PLANE)
+        on, at = np.repeat(bent, len(places)), np.tile(places, (len(bent), 1))
+        reach = _BESIDE * allowed[k] / frame.scale
+        if len(on) and (body.surfaces.distance(on, at) < reach).any():
+            out.append(k)
     return out
 
 

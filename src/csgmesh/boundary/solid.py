@@ -8,6 +8,9 @@
 4. Equal facets become one, between two regions, with the names of all leaves there (`sheets`).
 5. Vertices move onto the exact surfaces around them (`projection`): facets approximate a surface,
    but an edge between two surfaces must lie on both. What that turns over is mended (`untangling`).
+
+Where facets meet in a corner and the exact surfaces do not, leaves there get finer facets, and all
+is done again.
 """
 
 from __future__ import annotations
@@ -39,6 +42,11 @@ from csgmesh.domain.surfaces import Surfaces
 from csgmesh.errors import EmptyDomainError, ShapeError, UnboundedDomainError
 from csgmesh.tolerance import DEVIATION_SHARE, SNAP_SHARE, coordinate_ulp
 
+#: Vertices this far off a surface, in local coordinates, are not on it.
+_ON = 1e-10
+#: How often facets are made finer where exact surfaces do not meet as facets do, at most.
+_ROUNDS = 1
+
 
 @dataclass(frozen=True, eq=False)
 class _Stock:
@@ -49,7 +57,25 @@ class _Stock:
     parts: tuple[tuple[int, ...], ...]  # none: the far sides of a half-space
 
 
-def evaluate_solid(shape: Any, deviation: float | None, snap: float | None) -> Plc:
+@dataclass(frozen=True)
+class _Again:
+    """The same evaluation, finer around some places."""
+
+    shape: Any
+    deviation: float | None
+    snap: float | None
+    finer: tuple[np.ndarray, ...]
+
+    def __call__(self, places: np.ndarray) -> Plc:
+        return evaluate_solid(self.shape, self.deviation, self.snap, (*self.finer, places))
+
+
+def evaluate_solid(
+    shape: Any,
+    deviation: float | None,
+    snap: float | None,
+    finer: tuple[np.ndarray, ...] = (),
+) -> Plc:
     """The boundary of a solid; see `csgmesh.evaluate`."""
     if isinstance(shape, Embed):
         raise ShapeError("Embed in space cannot be evaluated: paths and points lie in the plane")
@@ -60,7 +86,7 @@ def evaluate_solid(shape: Any, deviation: float | None, snap: float | None) -> P
         snap or SNAP_SHARE * diagonal, coordinate_ulp(frame.centre, diagonal * np.ones(1))
     )
     near = user_snap / frame.scale
-    bodies = leaf_bodies(program.leaves, frame, deviation, near)
+    bodies = leaf_bodies(program.leaves, frame, deviation, near, finer)
     stock = _stock(bodies)
     classes = coincidence(stock.surfaces, near)
     sheets = regions_of([code for _, code in program.regions], bodies, program.leaves)
@@ -79,15 +105,17 @@ def evaluate_solid(shape: Any, deviation: float | None, snap: float | None) -> P
         settled.points, found.triangles, found.surface, found.region, marker
     )
     points, surfaces = project_vertices(before, triangles, surface, classes.surfaces)
+    again = _Again(shape, deviation, snap, finer)
+    lost = _strays(points, triangles, surface, surfaces)
+    if len(lost) and len(finer) < _ROUNDS:
+        return again(lost * frame.scale + frame.centre)
     sides = np.column_stack([marker, region])
     mended = untangled(before, points, triangles, surface, sides, surfaces)
-    if len(mended.parent) < len(triangles):
-        surface, region, marker = (a[mended.parent] for a in (surface, region, marker))
+    points, triangles = mended.points, mended.triangles
+    if len(mended.parent) < len(surface):
         points, triangles, surface, region, marker = canonical(
-            mended.points, mended.triangles, surface, region, marker
+            points, triangles, *(of[mended.parent] for of in (surface, region, marker))
         )
-    else:
-        points, triangles = mended.points, mended.triangles
     used, number = np.unique(surface, return_inverse=True)
     exact = surfaces[used].transformed(frame.scale * np.eye(3), frame.centre)
     return Plc.build(
@@ -104,7 +132,21 @@ def evaluate_solid(shape: Any, deviation: float | None, snap: float | None) -> P
         report=report,
         oracle=program,
         sweep=swept_domain(program, deviation),
+        finer=again,
     )
+
+
+def _strays(
+    points: np.ndarray, triangles: np.ndarray, surface: np.ndarray, surfaces: Surfaces
+) -> np.ndarray:
+    """Vertices (k, 3) that are not on all surfaces around them, for these meet nowhere near."""
+    vertex, on = triangles.ravel(), np.repeat(surface, 3)
+    low, high = np.full(len(points), len(surfaces)), np.full(len(points), -1)
+    np.minimum.at(low, vertex, on)
+    np.maximum.at(high, vertex, on)
+    several = np.flatnonzero((low < high)[vertex])
+    off = surfaces.distance(on[several], points[vertex[several]])
+    return points[np.unique(vertex[several[off > _ON]])]
 
 
 def _stock(bodies: Sequence[Facets]) -> _Stock:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, fields
 from functools import cached_property
 from typing import Any
@@ -44,6 +45,9 @@ class Plc:
     oracle : Oracle or None
     sweep : SweptDomain or None
         What sweeps the domain, if a planar one does.
+    finer : callable or None
+        The same domain with finer facets around places (k, 3), for those who find that facets do
+        not meet there as the exact surfaces do.
     """
 
     points: np.ndarray
@@ -59,6 +63,7 @@ class Plc:
     report: Report
     oracle: Oracle | None
     sweep: SweptDomain | None
+    finer: Callable[[np.ndarray], Plc] | None
 
     @classmethod
     def build(cls, **values: Any) -> Plc:

@@ -9,25 +9,21 @@ import numpy as np
 
 from csgmesh.domain.plc import Plc
 from csgmesh.domain.surface_mesh import SurfaceMesh
-from csgmesh.errors import BudgetError, MeshingError
+from csgmesh.errors import BudgetError
 from csgmesh.improve.tetrahedra import improve_tetrahedra
 from csgmesh.mesh import Mesh
 from csgmesh.meshers.hexahedra import hexahedral_mesh
 from csgmesh.meshers.octree.cubes import mixed_cells
-from csgmesh.meshers.octree.lattice import Lattice, lattice
+from csgmesh.meshers.octree.filling import fill
+from csgmesh.meshers.octree.lattice import Lattice
 from csgmesh.meshers.octree.sizes import SpaceSizes
-from csgmesh.meshers.surface import surface_mesh
-from csgmesh.meshers.tetrahedra import Tetrahedra, tetrahedralize
+from csgmesh.meshers.tetrahedra import Tetrahedra
 from csgmesh.meshers.workspace import Progress
 from csgmesh.options import check_choice, check_flag, check_growth, check_whole
 from csgmesh.size.field import Source
 from csgmesh.size.resolve import ResolvedSize, resolve
 
 CELLS = ("tetra", "hexahedron", "mixed")
-#: Times that sizes are made smaller where triangles of the surface are no faces of tetrahedra.
-ROUNDS = 5
-#: By so much, each time.
-SMALLER = 0.5
 STAGES = 4
 #: Sizes for mixed cells that vary by no more than this are made even: cells of one size are
 #: hexahedra, of which there are a twelfth as many as of tetrahedra.
@@ -171,8 +167,7 @@ class Octree:
         if self.cells == "hexahedron":
             sizes = even_sizes(domain, size, self.gradation, self.max_points)
             return hexahedral_mesh(domain, sizes, max_points=self.max_points, progress=progress)
-        sizes = self._sizes(domain, size)
-        filled, surface, grid = self._tetrahedra(domain, sizes, progress)
+        filled, surface, grid, sizes = self._tetrahedra(domain, size, progress)
         info: dict[str, object] = {"method": "Octree", "options": dict(vars(self))}
         if sizes.walls is not None:
             info["walls"] = sizes.walls.info()
@@ -187,25 +182,16 @@ class Octree:
         return sizes.fit_for_walls(self.walls, self.max_points, self.max_points)
 
     def _tetrahedra(
-        self, domain: Plc, sizes: SpaceSizes, progress: Progress | None
-    ) -> tuple[Tetrahedra, SurfaceMesh, Lattice | None]:
+        self, domain: Plc, size: Any, progress: Progress | None
+    ) -> tuple[Tetrahedra, SurfaceMesh, Lattice | None, SpaceSizes]:
         told = progress or _silent
-        for _ in range(ROUNDS):
-            told("surface", 0, STAGES)
-            surface = surface_mesh(domain, sizes, max_points=self.max_points, progress=progress)
-            told("lattice", 1, STAGES)
-            grid = lattice(sizes, surface, self.max_points)
-            told("tetrahedra", 2, STAGES)
-            filled = tetrahedralize(surface, grid.points, grid.kept)
-            if not len(filled.missing):
-                break
-            sizes = sizes.smaller_at(filled.places, SMALLER, self.max_points)
-        else:
-            x, y, z = filled.places[0]
-            raise MeshingError(
-                f"the surface at ({x:.6g}, {y:.6g}, {z:.6g}) cannot be filled with tetrahedra, "
-                f"however fine: {len(filled.missing)} triangles are missing after {ROUNDS} rounds"
-            )
+
+        def tell(stage: int) -> None:
+            told(("surface", "lattice", "tetrahedra")[stage], stage, STAGES)
+
+        surface, grid, filled, sizes = fill(
+            domain, lambda d: self._sizes(d, size), self.max_points, progress, tell
+        )
         # What is needed no more goes before memory is asked for.
         left = grid if self.cells == "mixed" else None
         del grid
@@ -229,7 +215,7 @@ class Octree:
                 face=better[4],
             )
         told("improve", STAGES, STAGES)
-        return filled, surface, left
+        return filled, surface, left, sizes
 
 
 def _even(sizes: SpaceSizes, asked: ResolvedSize | None, max_points: int) -> SpaceSizes:
