@@ -166,6 +166,17 @@ def test_parts_have_names_without_the_users_doing() -> None:
     assert names(cm.Revolve(cm.Disk((2, 0), 1))) == ["revolve.side.disk"]
 
 
+def test_the_axis_belongs_to_what_is_turned_about_it() -> None:
+    """Also where the profile's edge along the axis closes an outline of arcs."""
+    foot = [(0, 0), (1.15, 0), ("arc", (1.3, 0.2), (1.15, 0.4)), ("arc", (0.65, 3.1), (0, 3.75))]
+    turned = cm.Revolve(cm.Outline([foot]))
+    z = np.linspace(-0.5, 4.5, 101)
+    on_axis = np.column_stack([0 * z, 0 * z, z])
+    within = (z > 0) & (z < 3.75)
+    away = (z != 0) & (abs(z - 3.75) > 1e-9)
+    assert (turned.contains(on_axis) == within)[away].all()
+
+
 OPEN_CUBE = SIDES[:5]
 TURNED_CUBE = [SIDES[0][::-1], *SIDES[1:]]
 

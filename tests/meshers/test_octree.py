@@ -138,12 +138,6 @@ def test_hexahedra_by_the_same_mesher() -> None:
     assert quality.scaled_jacobian.min() > 0.5
     # The smallest size holds everywhere.
     assert 0.15 < np.median(quality.max_edge) < 0.3
-    with pytest.raises(cm.MeshingError, match="one material"):
-        cm.generate(
-            cm.Regions({"a": plate, "b": cm.Ball((0.3, 0.3, 0.25), 0.1)}),
-            cm.Octree(cells="hexahedron"),
-            size=0.2,
-        )
     with pytest.raises(cm.SizeError):
         cm.generate(plate, cm.Octree(cells="hexahedron"), size=0)
 

@@ -13,6 +13,7 @@ from csgmesh.csg.primitives.extrude import planar, side_parts
 from csgmesh.csg.shape import Shape
 from csgmesh.csg.solid import Revolution, Solid
 from csgmesh.errors import ShapeError
+from csgmesh.tolerance import ON_CURVE_SHARE
 
 
 @dataclass(frozen=True, eq=False, repr=False, init=False)
@@ -64,7 +65,9 @@ class Revolve(Solid):
 
     def inside(self, points: np.ndarray) -> np.ndarray:
         radius = np.hypot(points[:, 0], points[:, 1])
-        result = self.shape._program.contains(np.column_stack([radius, points[:, 2]]))
+        # The axis may be an edge of the profile, where membership is unspecified: ask beside it.
+        beside = np.maximum(radius, ON_CURVE_SHARE * abs(self.shape.bounds()[1][0]))
+        result = self.shape._program.contains(np.column_stack([beside, points[:, 2]]))
         if self.angle < 360.0:
             turn = np.degrees(np.arctan2(points[:, 1], points[:, 0])) % 360.0
             result &= (turn <= self.angle) | (radius == 0.0)
