@@ -207,6 +207,7 @@ def _measured(
 ) -> Row:
     from csgmesh.measures import quality
     from csgmesh.measures.space.quality import SpaceQuality
+    from csgmesh.mesh.description import counted
 
     measured = quality(mesh)
     angle = measured.min_dihedral if isinstance(measured, SpaceQuality) else measured.min_angle
@@ -214,7 +215,7 @@ def _measured(
     shape = np.sin(np.radians(angle)) / np.sin(best)
     has_jacobian = ~np.isnan(measured.scaled_jacobian)
     shape[has_jacobian] = measured.scaled_jacobian[has_jacobian]
-    cells = ", ".join(f"{len(rows):,} {kind}s" for kind, rows in mesh.cells.items())
+    cells = ", ".join(counted(len(rows), kind) for kind, rows in mesh.cells.items())
     return Row(
         name,
         cells,

@@ -310,7 +310,13 @@ def test_a_reader_that_has_read_enough(plate: Path) -> None:
 def test_ctrl_c_ends_it_with_its_code(plate: Path) -> None:
     slow = changed(plate, "default: 0.4", "default: 0.002")
     command = [sys.executable, "-m", "csgmesh", "mesh", str(slow), "--max-cells", "100000000"]
-    with subprocess.Popen(command, stderr=subprocess.PIPE, text=True) as process:
+    with subprocess.Popen(
+        command,
+        stderr=subprocess.PIPE,
+        text=True,
+        # Shells start what runs in the background deaf to it.
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
+    ) as process:
         time.sleep(1.0)
         process.send_signal(signal.SIGINT)
         _, stderr = process.communicate(timeout=60)

@@ -46,5 +46,5 @@ def test_solids_go_through_the_meshers_of_space(tmp_path):
         cm.Extrude(cm.Box((0, 0), (1, 1)), 1), 0.25, {"grid": cm.Sweep(cm.Structured())}
     )
     (grid,) = table.rows
-    assert (grid.cells, grid.worst, grid.min_angle) == ("64 hexahedrons", 1.0, 90.0)
+    assert (grid.cells, grid.worst, grid.min_angle) == ("64 hexahedra", 1.0, 90.0)
     assert grid.size_error < 1e-12

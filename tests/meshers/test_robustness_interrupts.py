@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import signal
 import subprocess
 import sys
 
@@ -15,22 +16,25 @@ import numpy as np
 import csgmesh as cm
 
 square = cm.Box((0, 0), (1, 1))
-cm.generate(square, size=0.3)  # what is compiled is compiled
+cm.generate(square, size=0.01)  # what is compiled is compiled
 t = np.linspace(0, 2 * np.pi, 200_000, endpoint=False)
 wave = (1 + 0.1 * np.sin(50 * t))[:, None] * np.column_stack([np.cos(t), np.sin(t)])
 sent = []
 
 def interrupt():
-    time.sleep(0.15)
-    sent.append(time.process_time())
-    os.kill(os.getpid(), signal.SIGINT)
+    # Python itself drops what is raised within a destructor; then people press again.
+    while True:
+        time.sleep(0.5 if sent else 0.15)
+        sent.append(time.process_time())
+        os.kill(os.getpid(), signal.SIGINT)
 
 threading.Thread(target=interrupt, daemon=True).start()
 try:
     while True:
         WORK
 except KeyboardInterrupt:
-    print(time.process_time() - sent[0])
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    print(time.process_time() - sent[-1])
 """
 
 
@@ -40,6 +44,12 @@ except KeyboardInterrupt:
 def test_an_interrupt_stops_the_work_at_once(work: str) -> None:
     program = PROGRAM.replace("WORK", work)
     done = subprocess.run(
-        [sys.executable, "-c", program], capture_output=True, text=True, timeout=120, check=True
+        [sys.executable, "-c", program],
+        capture_output=True,
+        text=True,
+        timeout=120,
+        check=True,
+        # Shells start what runs in the background deaf to it.
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
     )
     assert float(done.stdout) < 0.3

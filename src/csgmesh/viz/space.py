@@ -11,6 +11,7 @@ from csgmesh.domain.plc import Plc
 from csgmesh.errors import InputError
 from csgmesh.measures.space.quality import space_quality
 from csgmesh.mesh import KINDS, Mesh
+from csgmesh.mesh.description import counted
 from csgmesh.mesh.faces import canonical_faces, faces_of
 from csgmesh.mesh.surfaces import is_surface, with_facets
 
@@ -104,7 +105,7 @@ def _towards(plc: Plc, view: tuple[float, float]) -> np.ndarray:
 
 def _of_surface(mesh: Mesh, options: Options) -> Polygons:
     """The facets of a surface, with their inner sides where a cut shows them."""
-    counts = ", ".join(f"{len(c):,} {kind}" for kind, c in mesh.cells.items())
+    counts = ", ".join(counted(len(c), kind) for kind, c in mesh.cells.items())
     mesh = with_facets(mesh)
     corners, markers, regions = [np.zeros((0, 4, 3))], [_NONE], [_NONE]
     for kind, rows in mesh.facets.items():
@@ -149,7 +150,7 @@ def polygons_of_mesh(mesh: Mesh, options: Options) -> Polygons:
         number = faces.find(canonical_faces(facet[:, : KINDS[kind].n_corners])[0])
         marker[number[number >= 0]] = mesh.facet_marker[kind][number >= 0]
     corners = mesh.points[np.where(rows < 0, rows[:, 2:3], rows)]
-    counts = ", ".join(f"{len(c):,} {kind}" for kind, c in mesh.cells.items())
+    counts = ", ".join(counted(len(c), kind) for kind, c in mesh.cells.items())
     lines, value = np.zeros((0, 2, 3)), _values(mesh, kept, options.color)
     drawn = None if value is None else value[owner]
     names = mesh.boundary_names

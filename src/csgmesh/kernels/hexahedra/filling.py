@@ -10,7 +10,7 @@ import numpy as np
 from numba import njit
 
 from ..pointers import ENTRY, HELPER
-from .nearest import closest_on_triangle
+from ..tree.triangle_distance import square_distance
 
 #: Cells looked at between two returns to the caller.
 SLICE = 3_000_000
@@ -38,7 +38,7 @@ def first_above(line, value):
 
 @njit(**ENTRY)
 def measure_depths(
-    triangles, normal, is_bent, is_outer, x, y, z, reach, near, depth, between, spot, start
+    triangles, normal, is_bent, is_outer, x, y, z, reach, near, depth, between, start
 ):
     """Distances of cells' middles from facets within reach, from facet `start` on; the next one.
 
@@ -70,7 +70,7 @@ def measure_depths(
                         continue
                     c = row + k
                     if is_bent[f] or not is_outer[f]:
-                        square = closest_on_triangle(t, x[i], y[j], z[k], spot)
+                        square = square_distance(t, 0, x[i], y[j], z[k])
                         if square > square_reach:
                             continue
                         if not is_outer[f]:

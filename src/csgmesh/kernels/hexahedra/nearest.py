@@ -7,6 +7,7 @@ from math import sqrt
 from numba import njit
 
 from ..pointers import ENTRY, HELPER
+from ..tree.triangle_distance import nearest_weights
 
 #: Places looked at between two returns to the caller.
 SLICE = 4_000
@@ -15,46 +16,9 @@ SLICE = 4_000
 @njit(**HELPER)
 def closest_on_triangle(t, px, py, pz, out):
     """The point of the triangle t (9,) nearest to p, and the square of its distance."""
-    abx = t[3] - t[0]
-    aby = t[4] - t[1]
-    abz = t[5] - t[2]
-    acx = t[6] - t[0]
-    acy = t[7] - t[1]
-    acz = t[8] - t[2]
-    apx = px - t[0]
-    apy = py - t[1]
-    apz = pz - t[2]
-    d1 = abx * apx + aby * apy + abz * apz
-    d2 = acx * apx + acy * apy + acz * apz
-    d3 = d1 - (abx * abx + aby * aby + abz * abz)
-    d4 = d2 - (acx * abx + acy * aby + acz * abz)
-    d5 = d1 - (abx * acx + aby * acy + abz * acz)
-    d6 = d2 - (acx * acx + acy * acy + acz * acz)
-    v = 0.0
-    w = 0.0
-    va = d3 * d6 - d5 * d4
-    vb = d5 * d2 - d1 * d6
-    vc = d1 * d4 - d3 * d2
-    if d1 <= 0.0 and d2 <= 0.0:
-        v = 0.0
-    elif d3 >= 0.0 and d4 <= d3:
-        v = 1.0
-    elif d6 >= 0.0 and d5 <= d6:
-        w = 1.0
-    elif vc <= 0.0 and d1 >= 0.0 and d3 <= 0.0:
-        v = d1 / (d1 - d3)
-    elif vb <= 0.0 and d2 >= 0.0 and d6 <= 0.0:
-        w = d2 / (d2 - d6)
-    elif va <= 0.0 and d4 - d3 >= 0.0 and d5 - d6 >= 0.0:
-        w = (d4 - d3) / ((d4 - d3) + (d5 - d6))
-        v = 1.0 - w
-    else:
-        total = va + vb + vc
-        v = vb / total
-        w = vc / total
-    out[0] = t[0] + v * abx + w * acx
-    out[1] = t[1] + v * aby + w * acy
-    out[2] = t[2] + v * abz + w * acz
+    v, w = nearest_weights(t, 0, px, py, pz)
+    for d in range(3):
+        out[d] = t[d] + v * (t[3 + d] - t[d]) + w * (t[6 + d] - t[d])
     dx = out[0] - px
     dy = out[1] - py
     dz = out[2] - pz

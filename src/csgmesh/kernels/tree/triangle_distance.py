@@ -8,8 +8,8 @@ from ..pointers import HELPER
 
 
 @njit(**HELPER)
-def square_distance(corner, t, x, y, z):
-    """Square of the distance of (x, y, z) from the triangle with coordinates corner[9 t:]."""
+def nearest_weights(corner, t, x, y, z):
+    """Where the triangle with coordinates corner[9 t:] is nearest: shares v, w of its two sides."""
     o = 9 * t
     abx = corner[o + 3] - corner[o]
     aby = corner[o + 4] - corner[o + 1]
@@ -32,26 +32,31 @@ def square_distance(corner, t, x, y, z):
     vc = d1 * d4 - d3 * d2
     vb = d5 * d2 - d1 * d6
     va = d3 * d6 - d5 * d4
-    v = 0.0
-    w = 0.0
     if d1 <= 0.0 and d2 <= 0.0:
-        v = 0.0
-    elif d3 >= 0.0 and d4 <= d3:
-        v = 1.0
-    elif d6 >= 0.0 and d5 <= d6:
-        w = 1.0
-    elif vc <= 0.0 and d1 >= 0.0 and d3 <= 0.0:
-        v = d1 / (d1 - d3)
-    elif vb <= 0.0 and d2 >= 0.0 and d6 <= 0.0:
-        w = d2 / (d2 - d6)
-    elif va <= 0.0 and d4 >= d3 and d5 >= d6:
+        return 0.0, 0.0
+    if d3 >= 0.0 and d4 <= d3:
+        return 1.0, 0.0
+    if d6 >= 0.0 and d5 <= d6:
+        return 0.0, 1.0
+    if vc <= 0.0 and d1 >= 0.0 and d3 <= 0.0:
+        return d1 / (d1 - d3), 0.0
+    if vb <= 0.0 and d2 >= 0.0 and d6 <= 0.0:
+        return 0.0, d2 / (d2 - d6)
+    if va <= 0.0 and d4 >= d3 and d5 >= d6:
         w = (d4 - d3) / ((d4 - d3) + (d5 - d6))
-        v = 1.0 - w
-    else:
-        whole = va + vb + vc
-        v = vb / whole
-        w = vc / whole
-    dx = apx - v * abx - w * acx
-    dy = apy - v * aby - w * acy
-    dz = apz - v * abz - w * acz
-    return dx * dx + dy * dy + dz * dz
+        return 1.0 - w, w
+    whole = va + vb + vc
+    return vb / whole, vc / whole
+
+
+@njit(**HELPER)
+def square_distance(corner, t, x, y, z):
+    """Square of the distance of (x, y, z) from the triangle with coordinates corner[9 t:]."""
+    v, w = nearest_weights(corner, t, x, y, z)
+    square = 0.0
+    for d in range(3):
+        a = corner[9 * t + d]
+        way = v * (corner[9 * t + 3 + d] - a) + w * (corner[9 * t + 6 + d] - a)
+        left = (x if d == 0 else (y if d == 1 else z)) - a - way
+        square += left * left
+    return square

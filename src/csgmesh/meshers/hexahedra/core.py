@@ -118,7 +118,6 @@ def _depths(strata: Strata, grid: Grid, size: float) -> tuple[np.ndarray, np.nda
             near,
             depth,
             between,
-            np.zeros(3),
             start,
         )
     return near, np.sqrt(depth) / size, np.sqrt(between) / size
