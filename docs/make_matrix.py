@@ -63,13 +63,16 @@ MESHERS: dict[str, tuple[str, tuple[str, ...]]] = {
     "hexahedron": ('Octree(cells="hexahedron")', tuple(SIZES)),
     "sweep": ("Sweep()", SWEPT),
     "sweep-quads": ("Sweep(QuadPairing())", SWEPT),
+    "sweep-o-grid": ('Sweep(QuadPairing(), axis="o-grid")', ("bowl", "chess_piece")),
 }
 
 
 def mesher_of(name: str) -> Any:
     """The mesher of a short name."""
+    if name == "sweep":
+        return cm.Sweep()
     if name.startswith("sweep"):
-        return cm.Sweep(cm.QuadPairing()) if name == "sweep-quads" else cm.Sweep()
+        return cm.Sweep(cm.QuadPairing(), axis="o-grid" if name == "sweep-o-grid" else "wedges")
     return cm.SurfaceRefinement() if name == "surface" else cm.Octree(cells=name)
 
 
@@ -174,8 +177,8 @@ def write_page(figures: dict[str, dict[str, Any]]) -> None:
         "hexahedra; their worst and their mean. The time is the processor's for the whole call",
         "from tree to mesh, with warm kernels; the check is `cm.check` with the shape given. What",
         "fails is shown as failed. At the axis of a revolution a sweep has cells as thin as its",
-        "turns are small. Drawn up by `docs/make_matrix.py` with csgmesh",
-        f"{cm.__version__}, Python {platform.python_version()}, numpy {version('numpy')} and "
+        "turns are small, unless an O-grid fills it. Drawn up by `docs/make_matrix.py` with",
+        f"csgmesh {cm.__version__}, Python {platform.python_version()}, numpy {version('numpy')}, "
         f"manifold3d {version('manifold3d')}.",
         "",
         "| solid, size | mesher | cells | worst | mean | time | check |",
