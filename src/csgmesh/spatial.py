@@ -57,6 +57,21 @@ class Boxes:
         return np.argwhere(meet)
 
 
+def nearest_distances(points: np.ndarray, others: np.ndarray) -> np.ndarray:
+    """Distance of each point from the nearest of the others, (n,); infinite if there are none.
+
+    Examples
+    --------
+    >>> nearest_distances(np.array([[0.0, 0, 0], [4, 0, 0]]), np.array([[1.0, 0, 0], [4, 3, 0]]))
+    array([1., 3.])
+    """
+    from scipy.spatial import cKDTree
+
+    if not len(others):
+        return np.full(len(points), np.inf)
+    return np.asarray(cKDTree(others).query(points)[0], float)
+
+
 def near_pairs(points: np.ndarray, distance: float) -> np.ndarray:
     """All pairs i < j of points no further apart than `distance`, (k, 2), sorted.
 

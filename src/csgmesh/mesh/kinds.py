@@ -51,6 +51,22 @@ class Kind:
             return self.n_points - 1
         return 1 if self.n_points == self.n_corners else 2
 
+    @property
+    def straight(self) -> str:
+        """Name of the kind of the corners alone."""
+        return _STRAIGHT[self.dim, self.n_corners]
+
+
+_STRAIGHT = {
+    (0, 1): "vertex",
+    (1, 2): "line",
+    (2, 3): "triangle",
+    (2, 4): "quad",
+    (3, 4): "tetra",
+    (3, 5): "pyramid",
+    (3, 6): "wedge",
+    (3, 8): "hexahedron",
+}
 
 _LINE = ((0, 1),)
 _TRIANGLE = ((0, 1), (1, 2), (2, 0))

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from csgmesh import kernels
-from csgmesh.size.facet_tree import FacetTree
+from csgmesh.size.box_tree import GradedTree, along_a_curve
 from csgmesh.size.field import Source
-from csgmesh.size.sources import GradedSources, along_a_curve, box_nodes
+from csgmesh.size.sources import GradedSources
 
 #: Points in one call of the kernel, which takes about a tenth of a second.
 _BATCH = 1 << 15
@@ -39,27 +39,22 @@ class GradedFacets:
     def __init__(
         self, triangles: np.ndarray, value: np.ndarray, reach: np.ndarray | float, growth: float
     ) -> None:
-        self._tree = tree = FacetTree(triangles)
+        self._tree = GradedTree(triangles, value, reach)
         self.growth = float(growth)
-        reaches = np.broadcast_to(np.asarray(reach, float), len(triangles))
-        self._value = tree.places(value[tree.order][:, None], np.inf)
-        self._reach = tree.places(reaches[tree.order][:, None], 0.0)
-        self._low = box_nodes(self._value, np.minimum, np.inf).reshape(-1)
-        self._far = box_nodes(self._reach, np.maximum, 0.0).reshape(-1)
 
     def __call__(self, points: np.ndarray) -> np.ndarray:
         """Sizes at points (n, 3), as (n,)."""
-        turn = along_a_curve(points)
+        tree, turn = self._tree, along_a_curve(points)
         flat = np.ascontiguousarray(points[turn], float).reshape(-1)
         value = np.empty(len(turn))
         for start in range(0, len(value), _BATCH):
             kernels.lowest_facets(
-                self._tree.corners.reshape(-1),
-                self._value.reshape(-1),
-                self._reach.reshape(-1),
-                self._tree.boxes.reshape(-1),
-                self._low,
-                self._far,
+                tree.corners.reshape(-1),
+                tree.value,
+                tree.reach,
+                tree.boxes.reshape(-1),
+                tree.low,
+                tree.far,
                 self.growth,
                 flat[3 * start : 3 * (start + _BATCH)],
                 value[start : start + _BATCH],

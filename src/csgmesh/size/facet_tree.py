@@ -5,27 +5,19 @@ from __future__ import annotations
 import numpy as np
 
 from csgmesh import kernels
-from csgmesh.size.sources import PER_LEAF, along_a_curve, box_nodes
+from csgmesh.size.box_tree import BoxTree, along_a_curve
 
 #: Rays in one call of the kernel, which takes about a tenth of a second.
 _BATCH = 1 << 16
 
 
-class FacetTree:
-    """Triangles in a complete binary tree of boxes, along a space-filling curve.
+class FacetTree(BoxTree):
+    """Triangles in a tree of boxes.
 
     Parameters
     ----------
     triangles : (m, 3, 3) float64
         Corners; all three the same, or two of them, for points and straight pieces.
-
-    Attributes
-    ----------
-    order : (m,) int64
-        The triangle at each place of the tree.
-    corners : (room, 9) float64
-    boxes : (2 n_leaves, 6) float64
-        Lower and upper corner of each node, of which number 0 is none.
 
     Examples
     --------
@@ -33,30 +25,6 @@ class FacetTree:
     >>> floor.first_met(np.array([[1.0, 1, 3]]), np.array([[0.0, 0, -1]]), 0.0, 9.0)
     (array([3.]), array([0]))
     """
-
-    def __init__(self, triangles: np.ndarray) -> None:
-        m = len(triangles)
-        a, b, c = (triangles[:, k] for k in range(3))
-        self.order = along_a_curve((a + b + c) / 3.0)
-        n_leaves = 1
-        while n_leaves * PER_LEAF < m:
-            n_leaves *= 2
-        self.room = n_leaves * PER_LEAF
-        self.corners = np.zeros((self.room, 9))
-        self.corners[:m] = triangles.reshape(-1, 9)[self.order]
-        low = self.places(np.minimum(np.minimum(a, b), c)[self.order], np.inf)
-        high = self.places(np.maximum(np.maximum(a, b), c)[self.order], -np.inf)
-        self.boxes = np.concatenate(
-            [box_nodes(low, np.minimum, np.inf), box_nodes(high, np.maximum, -np.inf)], axis=1
-        )
-        # No ray meets a box at infinity, while one from infinity to minus infinity is everywhere.
-        self.boxes[self.boxes[:, 0] > self.boxes[:, 3]] = np.inf
-
-    def places(self, values: np.ndarray, empty: float) -> np.ndarray:
-        """Values (m, k) in the tree's order with those of the places that nothing takes."""
-        out = np.full((self.room, values.shape[1]), empty)
-        out[: len(values)] = values
-        return out
 
     def first_met(
         self,

@@ -45,8 +45,7 @@ def check_orientation(case: SpaceCase) -> Check:
             bad.append(np.flatnonzero(~are_oriented(case.mesh.points, rows)) + before)
             before += len(rows)
             continue
-        base = {4: "tetra", 8: "hexahedron", 6: "wedge", 5: "pyramid"}[rows.shape[1]]
-        least = least_jacobians(case.mesh.points, base, rows)
+        least = least_jacobians(case.mesh.points, KINDS[kind].straight, rows)
         if kind == "tetra10":
             nodes = case.mesh.points[case.mesh.cells[kind]]
             least = np.minimum(least, tetra_bounds(nodes).least)

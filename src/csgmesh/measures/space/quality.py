@@ -123,7 +123,7 @@ def space_quality(mesh: Mesh) -> SpaceQuality:
 def _measured(points: np.ndarray, kind: str, rows: np.ndarray) -> list[np.ndarray]:
     """The measures of the cells of one kind, in the order of the attributes."""
     corners = points[rows]
-    base = _straight(kind)
+    base = KINDS[kind].straight
     low, high = np.full(len(rows), np.inf), np.full(len(rows), -np.inf)
     for at, along, left, right in _fans(base):
         angle = _dihedral(*(corners[:, k] - corners[:, at] for k in (along, left, right)))
@@ -150,12 +150,6 @@ def _curved(nodes: np.ndarray, straight: list[np.ndarray]) -> list[np.ndarray]:
     with np.errstate(divide="ignore", invalid="ignore"):
         least = bounds.least / np.abs(6.0 * volume)
     return [low, high, bounds.ratio, least, shortest, longest, volume]
-
-
-def _straight(kind: str) -> str:
-    """The kind of the corners alone."""
-    n = KINDS[kind].n_corners
-    return {4: "tetra", 8: "hexahedron", 6: "wedge", 5: "pyramid"}[n]
 
 
 def _fans(kind: str) -> list[tuple[int, int, int, int]]:

@@ -16,6 +16,7 @@ from csgmesh.meshers.surface import surface_mesh
 from csgmesh.meshers.surface.halving import halve_longest
 from csgmesh.meshers.tetrahedra import Tetrahedra, tetrahedralize
 from csgmesh.meshers.workspace import Progress
+from csgmesh.spatial import nearest_distances
 
 #: Times that sizes are made smaller where triangles of the surface are no faces of tetrahedra.
 ROUNDS = 8
@@ -77,7 +78,7 @@ def fill(
             filled = tetrahedralize(surface, grid.points, grid.kept)
         if not len(filled.missing):
             return surface, grid, filled, sizes
-        same = _near(places, past, _SAME * sizes(places))
+        same = nearest_distances(places, past) < _SAME * sizes(places)
         lasting = lasting + 1 if same.any() else 0
         past = places
         if lasting >= _LASTING - 1 and domain.finer is not None and n_domains < _DOMAINS:
@@ -90,9 +91,3 @@ def fill(
         f"the surface at ({x:.6g}, {y:.6g}, {z:.6g}) cannot be filled with tetrahedra, "
         f"however fine: {len(filled.missing)} triangles are missing after {ROUNDS} rounds"
     )
-
-
-def _near(places: np.ndarray, others: np.ndarray, reach: np.ndarray) -> np.ndarray:
-    """Which of the places (k, 3) have one of the others within their reach (k,)."""
-    square = ((places[:, None] - others[None]) ** 2).sum(axis=2)
-    return np.asarray((square < reach[:, None] ** 2).any(axis=1))

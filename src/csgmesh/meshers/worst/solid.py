@@ -49,7 +49,7 @@ def worst_solids(mesh: Mesh, count: int) -> list[dict[str, object]]:
 
 def _fills_an_edge(mesh: Mesh, kind: str, rows: np.ndarray) -> np.ndarray:
     """Which cells have two facets of the boundary for faces that meet sharply, (k,) bool."""
-    base = {4: "tetra", 8: "hexahedron", 6: "wedge", 5: "pyramid"}[rows.shape[1]]
+    base = KINDS[kind].straight
     faces = faces_of({base: rows})
     bounds = np.zeros(len(faces.points) + 1, bool)
     for facet_kind, facets in mesh.facets.items():
